@@ -1,0 +1,24 @@
+# What every target of ours is compiled with: warnings are errors, ccache where it is there,
+# sanitizers where asked for. Link against bole_options to get it.
+find_program(CCACHE ccache)
+if(CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE}")
+  set(CMAKE_C_COMPILER_LAUNCHER "${CCACHE}")
+endif()
+
+add_library(bole_options INTERFACE)
+target_compile_options(bole_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Werror)
+target_include_directories(bole_options INTERFACE "${CMAKE_SOURCE_DIR}/src")
+if(BOLE_SANITIZE)
+  target_compile_options(bole_options INTERFACE
+    -fsanitize=${BOLE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(bole_options INTERFACE -fsanitize=${BOLE_SANITIZE})
+endif()
+
+# bole_library(name sources...): a static library of ours.
+function(bole_library name)
+  add_library(${name} STATIC ${ARGN})
+  target_link_libraries(${name} PRIVATE bole_options)
+  target_include_directories(${name} PUBLIC "${CMAKE_SOURCE_DIR}/src")
+endfunction()

@@ -1,0 +1,25 @@
+# Debian packages that building and testing need; sourced by demo, test and .ci/run.
+# shellcheck shell=bash
+build_packages=(
+  build-essential ccache cmake git ninja-build pkg-config
+  libbenchmark-dev libcli11-dev libgmock-dev libgtest-dev libhwy-dev liblcm-bin liblcm-dev
+  libopencv-dev libpng-dev libspdlog-dev libsystemd-dev libtomlplusplus-dev libturbojpeg0-dev
+  libyaml-cpp-dev nlohmann-json3-dev zlib1g-dev
+)
+check_packages=(clang-format clang-tidy python3-venv)
+
+# install_packages name...: installs those that are missing; silent when all are there.
+install_packages() {
+  local missing=()
+  for package in "$@"; do
+    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' ||
+      missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return
+  local as_root=()
+  [ "$(id -u)" -eq 0 ] || as_root=(sudo)
+  echo "installing: ${missing[*]}"
+  "${as_root[@]}" apt-get update -qq
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+}

@@ -1,0 +1,142 @@
+#include "base/files.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include "base/errors.h"
+
+namespace bole {
+namespace {
+
+std::string reason(int error) { return std::generic_category().message(error); }
+
+struct OpenedFile {
+  UniqueFd fd;
+  std::size_t size;
+};
+
+OpenedFile open_regular(const std::filesystem::path& path) {
+  // O_NONBLOCK: a FIFO of that name must not hang the start.
+  UniqueFd fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (!fd) {
+    throw ConfigError(path, "", "cannot be read: " + reason(errno),
+                      "give the path of a readable file");
+  }
+  struct stat info {};
+  if (::fstat(fd.get(), &info) != 0 || !S_ISREG(info.st_mode)) {
+    throw ConfigError(path, "", "is not a regular file", "give the path of a readable file");
+  }
+  return {std::move(fd), static_cast<std::size_t>(info.st_size)};
+}
+
+void write_all(const UniqueFd& fd, std::span<const std::byte> bytes,
+               const std::filesystem::path& path) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(fd.get(), bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) {
+      throw ConfigError(path, "", "cannot be written: " + reason(errno),
+                        "free space or permission");
+    }
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+void sync_folder(const std::filesystem::path& folder) {
+  const UniqueFd fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (fd) ::fsync(fd.get());
+}
+
+// Removes the half-written file unless the rename was reached.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const std::filesystem::path& target)
+      : name_(target.string() + ".XXXXXX"), fd_(::mkostemp(name_.data(), O_CLOEXEC)) {
+    if (!fd_) {
+      throw ConfigError(target, "", "cannot be written: " + reason(errno),
+                        "give a folder that may be written to");
+    }
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (!name_.empty()) ::unlink(name_.c_str());
+  }
+
+  const UniqueFd& fd() const { return fd_; }
+  bool rename_to(const std::filesystem::path& target) {
+    if (::fchmod(fd_.get(), 0644) != 0 || ::fsync(fd_.get()) != 0 ||
+        ::rename(name_.c_str(), target.c_str()) != 0) {
+      return false;
+    }
+    name_.clear();
+    return true;
+  }
+
+ private:
+  std::string name_;
+  UniqueFd fd_;
+};
+
+}  // namespace
+
+UniqueFd::~UniqueFd() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+MappedFile::MappedFile(const std::filesystem::path& path) {
+  const OpenedFile file = open_regular(path);
+  if (file.size == 0) throw ConfigError(path, "", "is empty", "build it anew");
+  void* address = ::mmap(nullptr, file.size, PROT_READ, MAP_SHARED, file.fd.get(), 0);
+  if (address == MAP_FAILED) {
+    throw ConfigError(path, "", "cannot be mapped: " + reason(errno), "");
+  }
+  bytes_ = {static_cast<const std::byte*>(address), file.size};
+}
+
+MappedFile::~MappedFile() {
+  if (!bytes_.empty()) ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
+}
+
+std::vector<std::byte> read_file(const std::filesystem::path& path, std::size_t max_bytes) {
+  const OpenedFile file = open_regular(path);
+  if (file.size > max_bytes) {
+    throw ConfigError(path, "", "has " + std::to_string(file.size) + " bytes",
+                      "at most " + std::to_string(max_bytes) + " are read");
+  }
+  std::vector<std::byte> bytes(file.size);
+  std::size_t filled = 0;
+  while (filled < bytes.size()) {
+    const ssize_t got = ::read(file.fd.get(), bytes.data() + filled, bytes.size() - filled);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) throw ConfigError(path, "", "cannot be read: " + reason(errno), "");
+    if (got == 0) break;
+    filled += static_cast<std::size_t>(got);
+  }
+  bytes.resize(filled);
+  return bytes;
+}
+
+std::string read_text_file(const std::filesystem::path& path, std::size_t max_bytes) {
+  const std::vector<std::byte> bytes = read_file(path, max_bytes);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::error_code ignored;  // mkostemp tells the better story
+  std::filesystem::create_directories(folder, ignored);
+  TemporaryFile temporary(path);
+  write_all(temporary.fd(), bytes, path);
+  if (!temporary.rename_to(path)) {
+    throw ConfigError(path, "", "cannot be replaced: " + reason(errno), "");
+  }
+  sync_folder(folder);
+}
+
+}  // namespace bole

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "detect/tree.h"
+#include "geometry/camera_config.h"
+#include "geometry/panorama_view.h"
+
+namespace bole {
+
+/// What stays the same from frame to frame. The seen map must outlive the detector.
+struct DetectorSetup {
+  PanoramaGeometry panorama;
+  SeenMap seen;
+  double height = 1.0;  ///< metres, viewpoint above the ground
+  Search search;
+};
+
+enum class DetectorMode { paper, bole };
+std::optional<DetectorMode> detector_mode_from_name(std::string_view name);
+
+/// Finds trunks in one panorama after the other, each by itself. Not for use by two threads at
+/// once.
+class Detector {
+ public:
+  virtual ~Detector() = default;
+
+  /// The trunks of one panorama of the setup's geometry, best score first; valid until the next
+  /// call. Allocates nothing once it has seen a few frames.
+  virtual std::span<const Tree> detect(const PanoramaView& panorama) = 0;
+};
+
+/// `paper`: Lu and Rasmussen's contrast templates, as a reference. `bole`: the product.
+std::unique_ptr<Detector> make_detector(DetectorMode mode, const DetectorSetup& setup);
+
+}  // namespace bole

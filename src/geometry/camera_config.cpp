@@ -1,0 +1,95 @@
+#include "geometry/camera_config.h"
+
+#include "geometry/angles.h"
+
+namespace bole {
+namespace {
+
+ImageSide side(TomlTable& table, std::string_view key, std::string_view fallback) {
+  const std::string text =
+      table.choice(key, fallback, {"image up", "image down", "image left", "image right"});
+  if (text == "image up") return ImageSide::up;
+  if (text == "image down") return ImageSide::down;
+  return text == "image left" ? ImageSide::left : ImageSide::right;
+}
+
+bool along_rows(ImageSide side) { return side == ImageSide::up || side == ImageSide::down; }
+
+void read_camera(TomlTable table, CameraConfig& config) {
+  const std::string model = table.choice("model", "ocam", {"ocam", "pinhole"});
+  config.model = model == "ocam" ? CameraConfig::Model::ocam : CameraConfig::Model::pinhole;
+  config.calibration = table.text("calibration", "");
+  config.mask = table.text("mask", "");
+  if (config.model == CameraConfig::Model::pinhole && config.calibration.empty()) {
+    config.horizontal_fov = radians(table.required_number("horizontal_fov_deg", {1, 170}));
+    config.size.width = static_cast<int>(table.required_number("width", {1, 20000}));
+    config.size.height = static_cast<int>(table.required_number("height", {1, 20000}));
+  } else if (config.calibration.empty()) {
+    table.fail("calibration", "is missing", "name OCamCalib's calib_results.txt");
+  }
+  table.done();
+}
+
+void read_mount(TomlTable table, CameraConfig& config) {
+  Mount& mount = config.mount;
+  mount.height = table.required_number("height_m", {0.05, 100});
+  if (config.model == CameraConfig::Model::ocam) {
+    mount.forward = side(table, "forward", "image up");
+    mount.left = side(table, "left", "image left");
+    if (along_rows(mount.forward) == along_rows(mount.left)) {
+      table.fail("left", "lies on the same axis as forward",
+                 "one is up or down, the other left or right");
+    }
+    mount.centre_looks_down = table.choice("centre", "down", {"down", "up"}) == "down";
+  } else if (table.has("horizon_row")) {
+    if (table.has("pitch_deg")) {
+      table.fail("horizon_row", "stands beside pitch_deg", "give one of the two");
+    }
+    config.horizon_row = table.required_number("horizon_row", {-20000, 40000});
+  }
+  mount.roll = radians(table.number("roll_deg", 0, {-180, 180}));
+  mount.pitch = radians(table.number("pitch_deg", 0, {-90, 90}));
+  mount.yaw = radians(table.number("yaw_deg", 0, {-360, 360}));
+  table.done();
+}
+
+void read_panorama(TomlTable table, CameraConfig& config) {
+  config.columns = table.integer("columns", 1440, {64, 16384});
+  if (config.columns % 8 != 0) table.fail("columns", "is not a multiple of 8", "for instance 1440");
+  config.elevation_top = radians(table.number("elevation_top_deg", 27, {-30, 80}));
+  config.range_min = table.number("range_min_m", 0.9, {0.05, 1000});
+  table.done();
+}
+
+void read_search(TomlTable table, CameraConfig& config) {
+  config.search.range = table.interval("range_m", {1.0, 8.0}, {0.05, 1000});
+  config.search.diameter = table.interval("diameter_m", {0.2, 0.8}, {0.01, 20});
+  table.done();
+}
+
+constexpr int kMostRows = 8192;
+
+}  // namespace
+
+CameraConfig parse_camera_config(std::string_view text, const std::string& file) {
+  TomlTable root(parse_toml(text, file), file);
+  CameraConfig config;
+  read_camera(root.table("camera"), config);
+  read_mount(root.table("mount"), config);
+  read_panorama(root.table("panorama"), config);
+  read_search(root.table("search"), config);
+  root.done();
+  const int rows = panorama_of(config).rows;
+  if (rows < 16 || rows > kMostRows) {
+    root.fail("panorama", "has " + std::to_string(rows) + " rows",
+              "elevation_top_deg, range_min_m, columns and mount.height_m must give 16 to " +
+                  std::to_string(kMostRows));
+  }
+  return config;
+}
+
+PanoramaGeometry panorama_of(const CameraConfig& config) {
+  return full_panorama(config.columns, config.elevation_top, config.range_min, config.mount.height);
+}
+
+}  // namespace bole

@@ -1,0 +1,36 @@
+#include "geometry/mount.h"
+
+namespace bole {
+namespace {
+
+// OCamCalib: x grows down the image, y to its right.
+Vec3 ocam_axis(ImageSide side) {
+  switch (side) {
+    case ImageSide::up:
+      return {-1, 0, 0};
+    case ImageSide::down:
+      return {1, 0, 0};
+    case ImageSide::left:
+      return {0, -1, 0};
+    case ImageSide::right:
+      break;
+  }
+  return {0, 1, 0};
+}
+
+Mat3 small_rotation(const Mount& mount) {
+  return rotation_z(mount.yaw) * rotation_y(mount.pitch) * rotation_x(mount.roll);
+}
+
+}  // namespace
+
+Mat3 robot_from_omni_camera(const Mount& mount) {
+  const Vec3 up{0, 0, mount.centre_looks_down ? 1.0 : -1.0};
+  return small_rotation(mount) * Mat3{{ocam_axis(mount.forward), ocam_axis(mount.left), up}};
+}
+
+Mat3 robot_from_forward_camera(const Mount& mount) {
+  return small_rotation(mount) * Mat3{{Vec3{0, 0, 1}, Vec3{-1, 0, 0}, Vec3{0, -1, 0}}};
+}
+
+}  // namespace bole
