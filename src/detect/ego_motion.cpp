@@ -1,0 +1,88 @@
+#include "detect/ego_motion.h"
+
+#include <cmath>
+
+#include "geometry/angles.h"
+#include "geometry/rotation.h"
+
+namespace bole {
+namespace {
+
+// The normal equations of a least-squares problem in (forward, left, turn).
+struct NormalEquations {
+  Mat3 matrix{{Vec3{}, Vec3{}, Vec3{}}};
+  Vec3 right;
+
+  void add(const Vec3& gradient, double residual, double weight) {
+    const std::array<double, 3> g{gradient.x, gradient.y, gradient.z};
+    for (int i = 0; i < 3; ++i) {
+      Vec3& row = matrix.rows[i];
+      row = {row.x + weight * g[i] * g[0], row.y + weight * g[i] * g[1],
+             row.z + weight * g[i] * g[2]};
+    }
+    right = {right.x + weight * residual * g[0], right.y + weight * residual * g[1],
+             right.z + weight * residual * g[2]};
+  }
+
+  // By Cramer's rule; the prior keeps the matrix well away from singular.
+  Vec3 solution() const {
+    const auto cross = [](const Vec3& a, const Vec3& b) {
+      return Vec3{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    };
+    const auto& [a, b, c] = matrix.rows;  // symmetric: rows are columns
+    const double determinant = dot(a, cross(b, c));
+    return {dot(right, cross(b, c)) / determinant, dot(a, cross(right, c)) / determinant,
+            dot(a, cross(b, right)) / determinant};
+  }
+};
+
+void add_sighting(NormalEquations& equations, const Sighting& sighting, const EgoMotion& motion) {
+  constexpr double kCauchy = 4.0;  // squared misfit, in variances, at which the weight is a half
+  const GroundPoint at = moved(sighting.before, motion);
+  const double range = std::max(std::hypot(at.x, at.y), 0.05);
+  const double cx = at.x / range, cy = at.y / range;
+  // at = R(-turn)(before - shift): its derivatives by forward, left and turn.
+  const double c = std::cos(motion.turn), s = std::sin(motion.turn);
+  const Vec3 dx{-c, -s, at.y}, dy{s, -c, -at.x};
+  const Vec3 range_gradient{cx * dx.x + cy * dy.x, cx * dx.y + cy * dy.y, cx * dx.z + cy * dy.z};
+  const Vec3 bearing_gradient{(cx * dy.x - cy * dx.x) / range, (cx * dy.y - cy * dx.y) / range,
+                              (cx * dy.z - cy * dx.z) / range};
+  const double bearing_error = wrap_angle(sighting.bearing - std::atan2(at.y, at.x));
+  const double range_error = sighting.range - range;
+  const double misfit = bearing_error * bearing_error / sighting.bearing_variance +
+                        range_error * range_error / sighting.range_variance;
+  const double weight = 1 / (1 + misfit / kCauchy);
+  equations.add(bearing_gradient, bearing_error, weight / sighting.bearing_variance);
+  equations.add(range_gradient, range_error, weight / sighting.range_variance);
+}
+
+void add_prior(NormalEquations& equations, const MotionPrior& prior, const EgoMotion& motion) {
+  const double shift = 1 / (prior.shift_sigma * prior.shift_sigma);
+  const double turn = 1 / (prior.turn_sigma * prior.turn_sigma);
+  equations.add({1, 0, 0}, prior.mean.forward - motion.forward, shift);
+  equations.add({0, 1, 0}, prior.mean.left - motion.left, shift);
+  equations.add({0, 0, 1}, prior.mean.turn - motion.turn, turn);
+}
+
+}  // namespace
+
+GroundPoint moved(const GroundPoint& point, const EgoMotion& motion) {
+  const double x = point.x - motion.forward, y = point.y - motion.left;
+  const double c = std::cos(motion.turn), s = std::sin(motion.turn);
+  return {c * x + s * y, -s * x + c * y};
+}
+
+EgoMotion estimate_motion(std::span<const Sighting> sightings, const MotionPrior& prior) {
+  EgoMotion motion = prior.mean;
+  for (int step = 0; step < 8; ++step) {
+    NormalEquations equations;
+    add_prior(equations, prior, motion);
+    for (const Sighting& sighting : sightings) add_sighting(equations, sighting, motion);
+    const Vec3 change = equations.solution();
+    motion = {motion.forward + change.x, motion.left + change.y, motion.turn + change.z};
+    if (norm(change) < 1e-6) break;
+  }
+  return motion;
+}
+
+}  // namespace bole

@@ -1,0 +1,188 @@
+#include "detect/tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "geometry/angles.h"
+#include "geometry/ground.h"
+
+namespace bole {
+namespace {
+
+struct WorldTree {
+  double x, y, diameter;
+};
+
+struct Pose {
+  double x = 0, y = 0, heading = 0;
+};
+
+Tree seen(const WorldTree& tree, const Pose& pose) {
+  const GroundPoint at = moved({tree.x, tree.y}, {pose.x, pose.y, pose.heading});
+  Tree result;
+  result.bearing = static_cast<float>(std::atan2(at.y, at.x));
+  result.range = static_cast<float>(std::hypot(at.x, at.y));
+  result.diameter = static_cast<float>(tree.diameter);
+  result.score = 0.9F;
+  result.bearing_sigma = 0.004F;
+  result.range_sigma = 0.02F * result.range;
+  result.diameter_sigma = 0.03F;
+  result.angular_width = static_cast<float>(angular_width(tree.diameter, result.range));
+  return result;
+}
+
+// A wood of trees at least 1.2 m apart, and a robot that winds through it at 1 m/s, 10 Hz.
+class Wood {
+ public:
+  explicit Wood(unsigned seed) : random_(seed) {
+    std::uniform_real_distribution<double> place(-12, 42), across(-14, 14), diameter(0.2, 0.8);
+    while (trees_.size() < 120) {
+      const WorldTree next{place(random_), across(random_), diameter(random_)};
+      const bool apart = std::ranges::all_of(trees_, [&](const WorldTree& other) {
+        return std::hypot(other.x - next.x, other.y - next.y) > 1.2;
+      });
+      if (apart) trees_.push_back(next);
+    }
+  }
+
+  static Pose pose(int frame) {
+    const double t = 0.1 * frame;
+    return {t, 0.8 * std::sin(0.5 * t), std::atan2(0.4 * std::cos(0.5 * t), 1.0)};
+  }
+
+  // One frame as a good detector sees it: noise, one tree in ten missed, in random order.
+  std::pair<std::vector<Tree>, std::vector<int>> frame(int index) {
+    std::normal_distribution<float> normal;
+    std::uniform_real_distribution<double> chance(0, 1);
+    std::vector<int> which;
+    for (int k = 0; k < static_cast<int>(trees_.size()); ++k) {
+      if (seen(trees_[k], pose(index)).range < 8 && chance(random_) > 0.1) which.push_back(k);
+    }
+    std::ranges::shuffle(which, random_);
+    std::vector<Tree> found;
+    for (const int k : which) {
+      Tree tree = seen(trees_[k], pose(index));
+      tree.bearing += normal(random_) * tree.bearing_sigma;
+      tree.range += normal(random_) * tree.range_sigma;
+      tree.diameter += normal(random_) * tree.diameter_sigma;
+      found.push_back(tree);
+    }
+    return {found, which};
+  }
+
+  const WorldTree& tree(int k) const { return trees_[k]; }
+
+ private:
+  std::mt19937 random_;
+  std::vector<WorldTree> trees_;
+};
+
+TEST(Tracker, KeepsOneIdForEachTreeOfAWindingDrive) {
+  Wood wood(7);
+  Tracker tracker;
+  std::map<int, std::set<int>> ids_of_tree, trees_of_id;
+  for (int frame = 0; frame < 300; ++frame) {
+    auto [found, which] = wood.frame(frame);
+    tracker.update(found, 0.1);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      ids_of_tree[which[i]].insert(found[i].id);
+      trees_of_id[found[i].id].insert(which[i]);
+    }
+  }
+  for (const auto& [id, trees] : trees_of_id) EXPECT_EQ(trees.size(), 1U) << "id " << id;
+  const auto torn =
+      std::ranges::count_if(ids_of_tree, [](const auto& e) { return e.second.size() > 1; });
+  EXPECT_LE(torn, 2) << "of " << ids_of_tree.size() << " trees";
+}
+
+TEST(Tracker, EstimatesTheRobotsMotionFromTheTrees) {
+  Wood wood(3);
+  Tracker tracker;
+  double worst_shift = 0, worst_turn = 0;
+  for (int frame = 0; frame < 100; ++frame) {
+    auto [found, which] = wood.frame(frame);
+    tracker.update(found, 0.1);
+    if (frame < 10) continue;
+    const Pose from = Wood::pose(frame - 1), to = Wood::pose(frame);
+    const GroundPoint shift = moved({to.x, to.y}, {from.x, from.y, from.heading});
+    const EgoMotion motion = tracker.last_motion();
+    worst_shift =
+        std::max(worst_shift, std::hypot(motion.forward - shift.x, motion.left - shift.y));
+    worst_turn =
+        std::max(worst_turn, std::abs(wrap_angle(motion.turn - (to.heading - from.heading))));
+  }
+  EXPECT_LT(worst_shift, 0.08);
+  EXPECT_LT(worst_turn, 0.01);
+}
+
+TEST(Tracker, SharpensRangeAndDiameterOverTime) {
+  Wood wood(5);
+  Tracker tracker;
+  double single = 0, refined = 0;
+  int count = 0;
+  for (int frame = 0; frame < 100; ++frame) {
+    auto [found, which] = wood.frame(frame);
+    const std::vector<Tree> alone = found;
+    tracker.update(found, 0.1);
+    if (frame < 30) continue;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const Tree truth = seen(wood.tree(which[i]), Wood::pose(frame));
+      single += std::abs(alone[i].range - truth.range);
+      refined += std::abs(found[i].range - truth.range);
+      ++count;
+    }
+  }
+  ASSERT_GT(count, 500);
+  EXPECT_LT(refined, 0.75 * single);
+}
+
+TEST(Tracker, PublishesEachTreeAtOnceAndNoneThatIsNotSeen) {
+  Tracker tracker;
+  std::vector<Tree> one{seen({3, 1, 0.4}, {})};
+  tracker.update(one, 0);
+  EXPECT_EQ(one[0].id, 0);
+  EXPECT_FLOAT_EQ(one[0].range, seen({3, 1, 0.4}, {}).range);
+  std::vector<Tree> none;
+  tracker.update(none, 0.1);
+  EXPECT_TRUE(none.empty());
+  tracker.update(one, 0.1);
+  EXPECT_EQ(one[0].id, 0) << "a tree hidden for a frame keeps its id";
+}
+
+TEST(Tracker, NeverGivesTheIdOfAHiddenTreeToItsNeighbourBehind) {
+  Tracker tracker;
+  std::vector<Tree> near{seen({4, 0, 0.3}, {})};
+  near[0].range_sigma = 1.0F;
+  tracker.update(near, 0);
+  std::vector<Tree> behind{seen({5.3, 0, 0.3}, {})};
+  behind[0].range_sigma = 1.0F;
+  tracker.update(behind, 0.1);
+  EXPECT_NE(behind[0].id, near[0].id);
+}
+
+TEST(Tracker, ForgetsAfterAJumpOfTimeAndNeverReusesAnId) {
+  Tracker tracker;
+  std::vector<Tree> one{seen({3, 1, 0.4}, {})};
+  tracker.update(one, 0.1);
+  tracker.update(one, -5.0);
+  EXPECT_EQ(one[0].id, 1);
+}
+
+TEST(Tracker, MeasuredMotionReplacesTheEstimate) {
+  Tracker tracker;
+  const WorldTree tree{3, 1, 0.4};
+  std::vector<Tree> first{seen(tree, {})};
+  tracker.update(first, 0.1);
+  std::vector<Tree> second{seen(tree, {0, 0, 1.0})};  // a turn no prior would expect
+  tracker.update(second, 0.1, EgoMotion{0, 0, 1.0});
+  EXPECT_EQ(second[0].id, first[0].id);
+}
+
+}  // namespace
+}  // namespace bole
