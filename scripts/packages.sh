@@ -7,6 +7,12 @@ build_packages=(
   libyaml-cpp-dev nlohmann-json3-dev zlib1g-dev
 )
 check_packages=(clang-format clang-tidy python3-venv)
+# The hardware-in-the-loop rig: the guest runs on the host's own root, so what it uses is installed
+# here, and the kernel is fetched without being installed.
+hil_packages=(
+  busybox-static cpio iproute2 kmod libcamera-ipa libcamera-tools python3 qemu-system-x86 systemd
+  udev v4l-utils xz-utils
+)
 
 # install_packages name...: installs those that are missing; silent when all are there.
 install_packages() {

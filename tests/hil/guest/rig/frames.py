@@ -1,0 +1,58 @@
+"""Frames for the cameras to show."""
+
+import dataclasses
+import pathlib
+import random
+
+from rig import environment
+
+# Bits per pixel of the formats that the rig's cameras have; MJPG has none.
+BITS_PER_PIXEL = {
+    "YUYV": 16, "UYVY": 16, "NV12": 12, "NM12": 12, "GREY": 8, "BA81": 8, "GBRG": 8, "GRBG": 8,
+    "RGGB": 8, "BGR3": 24, "RGB3": 24,
+}
+USB_FORMATS = ("YUYV", "UYVY", "NV12", "GREY", "BA81", "GBRG", "GRBG", "RGGB", "BGR3", "MJPG")
+SIZES = ((640, 480), (1280, 720))
+
+END_OF_JPEG = b"\xff\xd9"
+
+
+@dataclasses.dataclass(frozen=True)
+class Mode:
+    """A pixel format and size, and a file of frames in it, one after another."""
+
+    fourcc: str
+    width: int
+    height: int
+    path: pathlib.Path
+
+    def __str__(self):
+        return f"{self.fourcc}:{self.width}x{self.height}:{self.path}"
+
+    def split(self, data):
+        """The frames in a recording of this mode."""
+        if self.fourcc == "MJPG":
+            return [part + END_OF_JPEG for part in data.split(END_OF_JPEG)[:-1]]
+        size = self.width * self.height * BITS_PER_PIXEL[self.fourcc] // 8
+        return [data[at:at + size] for at in range(0, len(data), size)]
+
+    def frames(self):
+        return self.split(self.path.read_bytes())
+
+
+def noise(fourcc, size, count=4):
+    """A mode with frames of random bytes: nothing that is shifted, swapped or lost can look right.
+    No picture comes out of a decoder, but the kernel looks into no frame. Made once."""
+    width, height = size
+    mode = Mode(fourcc, width, height, environment.SCRATCH / f"noise_{fourcc}_{width}x{height}")
+    if not mode.path.exists():
+        numbers = random.Random(str(mode))
+        mode.path.write_bytes(b"".join(_noise_frame(mode, numbers) for _ in range(count)))
+    return mode
+
+
+def _noise_frame(mode, numbers):
+    if mode.fourcc == "MJPG":
+        size = mode.width * mode.height // numbers.randint(8, 16)  # frames of different sizes
+        return b"\xff\xd8" + numbers.randbytes(size).replace(b"\xff", b"\xfe") + END_OF_JPEG
+    return numbers.randbytes(mode.width * mode.height * BITS_PER_PIXEL[mode.fourcc] // 8)
