@@ -1,15 +1,15 @@
 #pragma once
 
 #include <chrono>
-#include <memory>
 #include <stdexcept>
 #include <string>
 
+#include "capture/drops.h"
 #include "capture/frame.h"
 
 namespace bole {
 
-/// Why a source could not be opened. Trying again later is sensible: the camera may come.
+/// Why a camera could not be opened. Trying again later is sensible: it may come, or come right.
 class CaptureError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -18,17 +18,18 @@ class CaptureError : public std::runtime_error {
 /// What came of waiting for a frame.
 struct Grab {
   enum class Kind {
-    frame,      ///< `frame` holds the newest one
-    timeout,    ///< nothing came in time
-    bad_frame,  ///< one came and could not be used; `reason` says why
-    lost,       ///< the camera is gone; close() and open() again
-    end,        ///< a replay is over
-    interrupted,
+    frame,        ///< `frame` holds the newest one
+    timeout,      ///< none came in time
+    bad_frame,    ///< only such came as cannot be used
+    lost,         ///< the camera is gone; close() and open() again
+    end,          ///< a replay is over
+    interrupted,  ///< by interrupt()
   };
   Kind kind = Kind::timeout;
   Frame frame;
-  int superseded = 0;  ///< older frames given back unused in favour of this one
-  std::string reason;
+  DropCounts drops;          ///< frames that came before this one and were not used
+  int stamps_corrected = 0;  ///< stamps that lay in the future and were set to now
+  std::string reason;        ///< of the last bad frame, or of the loss; else empty
 };
 
 /// A camera, or files in place of one. One thread uses it; interrupt() may come from any.
@@ -45,6 +46,8 @@ class FrameSource {
   virtual void close() noexcept = 0;
   /// Makes a grab() that waits, or the next one, return `interrupted`.
   virtual void interrupt() noexcept = 0;
+  /// Time from a frame to the next as negotiated; 0 while it is not known.
+  virtual std::chrono::nanoseconds frame_period() const = 0;
   /// One line for logs and the status: device, format, size, rate as negotiated.
   virtual std::string description() const = 0;
 };

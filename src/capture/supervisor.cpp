@@ -1,0 +1,175 @@
+#include "capture/supervisor.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace bole {
+namespace {
+
+std::string seconds(std::int64_t ns) {
+  const std::int64_t tenths = (ns + 50'000'000) / 100'000'000;
+  return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " s";
+}
+
+}  // namespace
+
+std::string_view name(CameraState state) {
+  constexpr std::array<std::string_view, 5> kNames = {"starting", "opening", "streaming", "stalled",
+                                                      "no camera"};
+  return kNames.at(static_cast<std::size_t>(state));
+}
+
+Supervisor::Supervisor(FrameSource& source, Clock& clock, OnEvent on_event,
+                       SupervisorOptions options)
+    : source_(source), clock_(clock), on_event_(std::move(on_event)), options_(options) {
+  reopen_wait_ns_ = options_.reopen_min.count();
+  restart_wait_ns_ = options_.restart_min.count();
+}
+
+Supervisor::~Supervisor() {
+  if (open_) source_.close();
+}
+
+void Supervisor::interrupt() noexcept {
+  interrupted_.raise();
+  source_.interrupt();
+}
+
+Grab Supervisor::next() {
+  Grab grab;
+  if (interrupted_.take()) {
+    grab.kind = Grab::Kind::interrupted;
+    return grab;
+  }
+  return open_ ? stream() : open_or_wait();
+}
+
+Grab Supervisor::open_or_wait() {
+  Grab grab;
+  const std::int64_t now_ns = clock_.mono_ns();
+  if (now_ns < next_try_ns_) {
+    const std::int64_t until_ns = std::min(next_try_ns_, now_ns + options_.tick.count());
+    if (!clock_.sleep_until(until_ns, interrupted_)) {
+      interrupted_.take();
+      grab.kind = Grab::Kind::interrupted;
+    }
+    return grab;
+  }
+  open();
+  return grab;
+}
+
+void Supervisor::open() {
+  try {
+    source_.open();
+  } catch (const CaptureError& error) {
+    ++counts_.failed_opens;
+    wait_for_camera(error.what());
+    return;
+  }
+  open_ = true;
+  got_frame_ = false;
+  last_seq_ = -1;
+  unused_since_frame_ = 0;
+  last_frame_ns_ = clock_.mono_ns();
+  // A stalled camera that was restarted stays stalled until a frame comes.
+  if (state_ != CameraState::stalled) enter(CameraState::opening, "waiting for the first frame");
+}
+
+void Supervisor::wait_for_camera(const std::string& reason) {
+  enter(CameraState::no_camera, reason);
+  next_try_ns_ = clock_.mono_ns() + reopen_wait_ns_;
+  reopen_wait_ns_ = std::min(2 * reopen_wait_ns_, options_.reopen_max.count());
+}
+
+Grab Supervisor::stream() {
+  Grab grab = source_.grab(options_.tick);
+  account(grab);
+  switch (grab.kind) {
+    case Grab::Kind::frame:
+      streaming();
+      break;
+    case Grab::Kind::bad_frame:
+    case Grab::Kind::timeout:
+      check_stall(grab.reason);
+      break;
+    case Grab::Kind::lost:
+      close();
+      ++counts_.losses;
+      wait_for_camera(grab.reason);
+      grab.kind = Grab::Kind::timeout;
+      break;
+    case Grab::Kind::end:
+    case Grab::Kind::interrupted:
+      break;
+  }
+  return grab;
+}
+
+void Supervisor::account(const Grab& grab) {
+  counts_.drops += grab.drops;
+  counts_.stamps_corrected += grab.stamps_corrected;
+  unused_since_frame_ += grab.drops.total();
+  if (grab.kind != Grab::Kind::frame) return;
+  ++counts_.frames;
+  const std::int64_t seq = grab.frame.sensor_seq();
+  if (last_seq_ >= 0) {
+    const std::int64_t missing = seq - last_seq_ - 1 - unused_since_frame_;
+    counts_.drops[DropCause::missing] += std::max<std::int64_t>(missing, 0);
+  }
+  last_seq_ = seq;
+  unused_since_frame_ = 0;
+}
+
+void Supervisor::streaming() {
+  got_frame_ = true;
+  last_frame_ns_ = clock_.mono_ns();
+  if (state_ == CameraState::streaming) return;
+  enter(CameraState::streaming, source_.description());
+  told_.clear();
+  reopen_wait_ns_ = options_.reopen_min.count();
+  restart_wait_ns_ = options_.restart_min.count();
+}
+
+std::int64_t Supervisor::stall_after_ns() const {
+  const double periods_ns =
+      options_.stall_periods * static_cast<double>(source_.frame_period().count());
+  const std::int64_t limit_ns =
+      std::max(static_cast<std::int64_t>(periods_ns), options_.stall_min.count());
+  return got_frame_ ? limit_ns : std::max(limit_ns, options_.first_frame.count());
+}
+
+void Supervisor::check_stall(const std::string& bad_frame) {
+  const std::int64_t silent_ns = clock_.mono_ns() - last_frame_ns_;
+  const std::int64_t limit_ns = stall_after_ns();
+  if (silent_ns < limit_ns) return;
+  if (state_ != CameraState::stalled) {
+    ++counts_.stalls;
+    enter(CameraState::stalled, "no " + std::string(bad_frame.empty() ? "" : "usable ") +
+                                    std::string(got_frame_ ? "frame" : "first frame") + " for " +
+                                    seconds(limit_ns) +
+                                    (bad_frame.empty() ? "" : ": " + bad_frame));
+  }
+  if (silent_ns < limit_ns + restart_wait_ns_) return;
+  restart_wait_ns_ = std::min(2 * restart_wait_ns_, options_.restart_max.count());
+  close();
+  ++counts_.restarts;
+  open();
+}
+
+void Supervisor::close() {
+  source_.close();
+  open_ = false;
+}
+
+void Supervisor::enter(CameraState state, const std::string& reason) {
+  if (state == state_ && reason == reason_) return;
+  state_ = state;
+  reason_ = reason;
+  const bool repeated = !told_.insert({state, reason}).second;
+  on_event_({state, reason, repeated});
+}
+
+}  // namespace bole
