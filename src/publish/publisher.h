@@ -2,12 +2,18 @@
 
 #include <cstddef>
 #include <span>
+#include <stdexcept>
 #include <string>
 
 namespace bole {
 
-/// A tree list or a status in its wire form, with what jsonl needs beside it.
-enum class MessageKind { trees, status };
+enum class MessageKind { status, trees };
+
+/// Why a bus did not take a message. The next one is tried anew: the bus may come back.
+class BusError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// One bus. Used by one thread of its own, so that a slow bus delays nothing else.
 class Publisher {
@@ -16,8 +22,8 @@ class Publisher {
 
   /// "lcm", "zenoh", "jsonl": as in --publish and in status_t.
   virtual std::string name() const = 0;
-  /// Hands `bytes`, the LCM encoding of the message, to the bus. Throws BusError when the bus
-  /// refuses it; the next message is tried anew.
+  /// Hands `bytes`, the LCM encoding of the message, to the bus. `file` is the replayed file's
+  /// name, empty for a camera. Throws BusError when the bus does not take it.
   virtual void publish(MessageKind kind, std::span<const std::byte> bytes,
                        const std::string& file) = 0;
 };

@@ -1,0 +1,9 @@
+#include "commands/commands.h"
+#include "program.h"
+
+int main(int argc, char** argv) {
+  CLI::App app{"The operator's tool of bole, which finds tree trunks around a robot", "bolectl"};
+  app.require_subcommand(1);
+  bole::add_listen(app);
+  return bole::run_program(app, argc, argv);
+}

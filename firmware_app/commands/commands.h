@@ -1,0 +1,12 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace bole {
+
+// Each adds one subcommand of bolectl with its options and what it does. A command that fails
+// throws: ConfigError for exit code 2, any other exception for 1.
+
+void add_listen(CLI::App& app);
+
+}  // namespace bole

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+
+#include "base/files.h"
+#include "publish/publisher.h"
+
+namespace bole {
+
+/// Tree lists as lines of JSON, each written at once. Statuses are not written: a line is a list.
+class JsonlPublisher : public Publisher {
+ public:
+  /// `target`: a path, whose file is made anew, or "-" for standard output. Throws ConfigError when
+  /// it cannot be written.
+  explicit JsonlPublisher(const std::filesystem::path& target);
+
+  std::string name() const override { return "jsonl"; }
+  void publish(MessageKind kind, std::span<const std::byte> bytes,
+               const std::string& file) override;
+
+ private:
+  UniqueFd fd_;
+  std::string line_;
+};
+
+}  // namespace bole

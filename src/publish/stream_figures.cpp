@@ -1,0 +1,55 @@
+#include "publish/stream_figures.h"
+
+#include <array>
+#include <cstdio>
+
+namespace bole {
+namespace {
+
+double ms(std::int64_t ns) { return static_cast<double>(ns) / 1e6; }
+
+}  // namespace
+
+void StreamFigures::add(const tree_list_t& list, std::int64_t arrival_mono_ns) {
+  if (lists_ == 0) first_arrival_ns_ = arrival_mono_ns;
+  if (last_seq_ >= 0 && list.seq > last_seq_ + 1) lost_ += list.seq - last_seq_ - 1;
+  if (list.seq <= last_seq_) ++restarts_;
+  last_seq_ = list.seq;
+  last_arrival_ns_ = arrival_mono_ns;
+  latency_.add(list.publish_mono_ns - list.capture_mono_ns);
+  delivery_.add(arrival_mono_ns - list.publish_mono_ns);
+  ++lists_;
+}
+
+double StreamFigures::rate() const {
+  const double seconds = static_cast<double>(last_arrival_ns_ - first_arrival_ns_) / 1e9;
+  return lists_ > 1 && seconds > 0 ? static_cast<double>(lists_ - 1) / seconds : 0;
+}
+
+std::string StreamFigures::text() const {
+  std::array<char, 256> line;
+  std::snprintf(line.data(), line.size(),
+                "%lld lists, %.1f/s, %lld lost, %lld restarts, %lld foreign; capture to publish "
+                "p50 %.2f p99 %.2f max %.2f ms; publish to here p50 %.2f p99 %.2f ms",
+                static_cast<long long>(lists_), rate(), static_cast<long long>(lost_),
+                static_cast<long long>(restarts_), static_cast<long long>(foreign_),
+                ms(latency_.quantile(0.5)), ms(latency_.quantile(0.99)), ms(latency_.max()),
+                ms(delivery_.quantile(0.5)), ms(delivery_.quantile(0.99)));
+  return line.data();
+}
+
+std::string StreamFigures::json() const {
+  std::array<char, 512> line;
+  std::snprintf(
+      line.data(), line.size(),
+      R"({"summary":{"lists":%lld,"rate":%.2f,"lost":%lld,"restarts":%lld,"foreign":%lld,)"
+      R"("latency_p50_ms":%.3f,"latency_p99_ms":%.3f,"latency_max_ms":%.3f,)"
+      R"("delivery_p50_ms":%.3f,"delivery_p99_ms":%.3f}})",
+      static_cast<long long>(lists_), rate(), static_cast<long long>(lost_),
+      static_cast<long long>(restarts_), static_cast<long long>(foreign_),
+      ms(latency_.quantile(0.5)), ms(latency_.quantile(0.99)), ms(latency_.max()),
+      ms(delivery_.quantile(0.5)), ms(delivery_.quantile(0.99)));
+  return line.data();
+}
+
+}  // namespace bole
