@@ -104,12 +104,19 @@ MappedFile::~MappedFile() {
 }
 
 std::vector<std::byte> read_file(const std::filesystem::path& path, std::size_t max_bytes) {
+  std::vector<std::byte> bytes;
+  read_file(path, max_bytes, bytes);
+  return bytes;
+}
+
+void read_file(const std::filesystem::path& path, std::size_t max_bytes,
+               std::vector<std::byte>& bytes) {
   const OpenedFile file = open_regular(path);
   if (file.size > max_bytes) {
     throw ConfigError(path, "", "has " + std::to_string(file.size) + " bytes",
                       "at most " + std::to_string(max_bytes) + " are read");
   }
-  std::vector<std::byte> bytes(file.size);
+  bytes.resize(file.size);
   std::size_t filled = 0;
   while (filled < bytes.size()) {
     const ssize_t got = ::read(file.fd.get(), bytes.data() + filled, bytes.size() - filled);
@@ -119,7 +126,6 @@ std::vector<std::byte> read_file(const std::filesystem::path& path, std::size_t 
     filled += static_cast<std::size_t>(got);
   }
   bytes.resize(filled);
-  return bytes;
 }
 
 std::string read_text_file(const std::filesystem::path& path, std::size_t max_bytes) {

@@ -56,6 +56,10 @@ class MappedFile {
 /// file or larger than `max_bytes`.
 std::vector<std::byte> read_file(const std::filesystem::path& path, std::size_t max_bytes);
 
+/// As above, into `bytes`, whose memory is used again.
+void read_file(const std::filesystem::path& path, std::size_t max_bytes,
+               std::vector<std::byte>& bytes);
+
 /// As read_file, as text.
 std::string read_text_file(const std::filesystem::path& path, std::size_t max_bytes);
 

@@ -1,0 +1,183 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string_view>
+#include <system_error>
+
+#include "base/errors.h"
+#include "capture/replay/image_file.h"
+#include "capture/replay/media.h"
+#include "capture/replay/names.h"
+#include "capture/replay/timestamps.h"
+
+namespace bole {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct FrameFile {
+  fs::path path;
+  std::string name;
+  std::int64_t utime_us = 0;
+};
+
+std::optional<PixelFormat> raw_format(const fs::path& path) {
+  const std::optional<PixelFormat> format = pixel_format_from_name(lower_ending(path));
+  return format == PixelFormat::mjpeg ? std::nullopt : format;  // a stream of many: a video
+}
+
+bool is_frame_name(const fs::path& path) {
+  constexpr std::array<std::string_view, 9> kEndings = {"png", "jpg", "jpeg", "bmp", "pgm",
+                                                        "ppm", "tif", "tiff", "webp"};
+  if (path.filename().string().starts_with('.')) return false;
+  return raw_format(path) || std::ranges::find(kEndings, lower_ending(path)) != kEndings.end();
+}
+
+bool is_mask(const fs::path& path, const fs::path& mask) {
+  if (mask.empty()) return false;
+  std::error_code not_there;
+  return path.filename() == mask.filename() || fs::equivalent(path, mask, not_there);
+}
+
+std::vector<FrameFile> list_folder(const ReplayOptions& options) {
+  std::vector<FrameFile> files;
+  std::error_code error;
+  for (fs::directory_iterator entry(options.path, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const fs::path& path = entry->path();
+    std::error_code vanished;
+    if (is_frame_name(path) && !is_mask(path, options.mask) && !fs::is_directory(path, vanished)) {
+      files.push_back({path, path.filename().string(), 0});
+    }
+  }
+  if (error) {
+    throw ConfigError(options.path, "", "cannot be listed: " + error.message(),
+                      "give a folder that may be read");
+  }
+  if (files.empty()) {
+    throw ConfigError(
+        options.path, "", "holds no frame",
+        "give a folder of images (png, jpg ...) or raw frames (yuyv, nv12, grey ...)");
+  }
+  std::ranges::sort(files, {}, &FrameFile::name);
+  return files;
+}
+
+void stamp_by_rate(std::vector<FrameFile>& files, double rate_hz) {
+  double index = 0;
+  for (FrameFile& file : files) file.utime_us = std::llround(1e6 * index++ / rate_hz);
+}
+
+void stamp_by_table(std::vector<FrameFile>& files, const fs::path& table) {
+  const std::map<std::string, std::int64_t> stamps = read_timestamps(table);
+  for (FrameFile& file : files) {
+    const auto found = stamps.find(file.name);
+    if (found == stamps.end()) {
+      throw ConfigError(table, "", file.name + " is missing", "give every frame a line");
+    }
+    file.utime_us = found->second;
+  }
+}
+
+class FileMedia : public ReplayMedia {
+ public:
+  FileMedia(std::vector<FrameFile> files, const ReplayOptions& options)
+      : files_(std::move(files)), size_(options.size), images_(options.size) {
+    const std::int64_t span_us = files_.back().utime_us - files_.front().utime_us;
+    period_us_ =
+        span_us > 0 ? span_us / (std::ssize(files_) - 1) : std::llround(1e6 / options.rate_hz);
+  }
+
+  // Refuses files of which not one is a frame, telling what ails the first.
+  void check() {
+    FrameSlot slot;
+    std::string first_error;
+    while (next_ < files_.size()) {
+      try {
+        read(slot);
+        rewind();
+        return;
+      } catch (const UnreadableFrame& error) {
+        if (first_error.empty()) first_error = error.what();
+      }
+    }
+    throw ConfigError(files_.front().path.parent_path(), "", first_error,
+                      files_.size() > 1 ? "so it is with every frame here" : "");
+  }
+
+  std::optional<std::int64_t> next_utime_us() override { return utime_us(next_); }
+  std::optional<std::int64_t> following_utime_us() override { return utime_us(next_ + 1); }
+
+  void read(FrameSlot& slot) override {
+    const FrameFile& file = files_.at(next_++);
+    try {
+      const std::optional<PixelFormat> raw = raw_format(file.path);
+      if (raw) {
+        read_raw(file.path, *raw, slot);
+      } else {
+        images_.read(file.path, slot);
+      }
+    } catch (const UnreadableFrame& error) {
+      throw UnreadableFrame(file.name + ": " + error.what());
+    }
+    slot.file = file.name;
+  }
+
+  void skip() override { ++next_; }
+  void rewind() override { next_ = 0; }
+  std::int64_t period_us() const override { return period_us_; }
+
+ private:
+  std::optional<std::int64_t> utime_us(std::size_t index) const {
+    if (index >= files_.size()) return std::nullopt;
+    return files_[index].utime_us;
+  }
+
+  void read_raw(const fs::path& path, PixelFormat format, FrameSlot& slot) const {
+    if (size_.width <= 0) throw UnreadableFrame("needs a calibration that gives its size");
+    const std::size_t needed = packed_frame_bytes(format, size_);
+    read_frame_file(path, slot.bytes);
+    if (slot.bytes.size() != needed || !view_packed(format, size_, slot.bytes)) {
+      throw UnreadableFrame("has " + std::to_string(slot.bytes.size()) + " bytes; " +
+                            std::to_string(needed) + " make a frame of the calibration's size");
+    }
+    slot.format = format;
+    slot.size = size_;
+  }
+
+  std::vector<FrameFile> files_;
+  ImageSize size_;
+  ImageReader images_;
+  std::int64_t period_us_ = 0;
+  std::size_t next_ = 0;
+};
+
+std::vector<FrameFile> list_files(const ReplayOptions& options) {
+  if (!fs::is_directory(options.path)) {
+    if (!is_frame_name(options.path)) {
+      throw ConfigError(options.path, "", "is no image, raw frame or video by its name's ending",
+                        "give an image (png, jpg ...), a raw frame (yuyv, nv12, grey ...) or a "
+                        "video (mp4, avi ...)");
+    }
+    return {{options.path, options.path.filename().string(), 0}};
+  }
+  std::vector<FrameFile> files = list_folder(options);
+  const fs::path table = options.path / "timestamps.csv";
+  if (fs::exists(table)) {
+    stamp_by_table(files, table);
+  } else {
+    stamp_by_rate(files, options.rate_hz);
+  }
+  return files;
+}
+
+}  // namespace
+
+std::unique_ptr<ReplayMedia> open_frame_files(const ReplayOptions& options) {
+  auto media = std::make_unique<FileMedia>(list_files(options), options);
+  media->check();
+  return media;
+}
+
+}  // namespace bole
