@@ -1,0 +1,255 @@
+#include "simulate/picture.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace bole::simulate {
+namespace {
+
+using Direction = PixelRays::Direction;
+
+Direction operator-(const Direction& a, const Direction& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+// How the direction changes from a pixel to the next, from whichever neighbours are seen.
+struct Steps {
+  Direction right, down;
+  float pixel;  // radians
+};
+
+Steps steps_at(const PixelRays& rays, int row, int column) {
+  const Direction& here = rays.at(row, column);
+  const auto step = [&](int dr, int dc) {
+    for (const int sign : {1, -1}) {
+      const int r = row + sign * dr, c = column + sign * dc;
+      if (r < 0 || c < 0 || r >= rays.size().height || c >= rays.size().width) continue;
+      if (!rays.at(r, c).seen()) continue;
+      const Direction d = rays.at(r, c) - here;
+      const auto k = static_cast<float>(sign);
+      return Direction{k * d.x, k * d.y, k * d.z};
+    }
+    return Direction{};
+  };
+  const Direction right = step(0, 1), down = step(1, 0);
+  const float across = right.x * right.x + right.y * right.y + right.z * right.z;
+  const float along = down.x * down.x + down.y * down.y + down.z * down.z;
+  return {right, down, std::max(1e-4F, std::sqrt(std::sqrt(across * along)))};
+}
+
+// Eight places in a pixel, no two in one row or column of eighths.
+constexpr std::array<std::array<float, 2>, 8> kPlaces = {
+    {{-7, -3}, {-5, 5}, {-3, -7}, {-1, 1}, {1, -1}, {3, 7}, {5, -5}, {7, 3}}};
+
+class Drawing {
+ public:
+  Drawing(const View& view, const Look& look, const PixelRays& rays, const Pose& pose)
+      : view_(view), look_(look), rays_(rays), caster_(pose), size_(rays.size()) {
+    const auto pixels = static_cast<std::size_t>(size_.width) * size_.height;
+    colours_.resize(pixels);
+    surfaces_.resize(pixels, -1);
+  }
+
+  void trace() {
+    for (int row = 0; row < size_.height; ++row) {
+      for (int column = 0; column < size_.width; ++column) {
+        const Direction& d = rays_.at(row, column);
+        if (!d.seen()) continue;
+        const Sight sight =
+            view_.trace(caster_.ray(d.x, d.y, d.z, steps_at(rays_, row, column).pixel));
+        colours_[index(row, column)] = sight.colour;
+        surfaces_[index(row, column)] = sight.surface;
+      }
+    }
+  }
+
+  void smooth_edges() {
+    for (int row = 0; row < size_.height; ++row) {
+      for (int column = 0; column < size_.width; ++column) {
+        if (!rays_.at(row, column).seen() || !on_edge(row, column)) continue;
+        colours_[index(row, column)] = averaged(row, column);
+      }
+    }
+  }
+
+  void vignette_and_glare() {
+    const float middle_row = 0.5F * static_cast<float>(size_.height);
+    const float middle_column = 0.5F * static_cast<float>(size_.width);
+    const float radius = std::min(middle_row, middle_column);
+    const float slope = std::sqrt(1 + look_.sun_slope * look_.sun_slope);
+    for (int row = 0; row < size_.height; ++row) {
+      for (int column = 0; column < size_.width; ++column) {
+        Colour& colour = colours_[index(row, column)];
+        const Direction& d = rays_.at(row, column);
+        if (!d.seen()) {
+          colour = {0.004F, 0.004F, 0.004F};
+          continue;
+        }
+        const float u = (static_cast<float>(row) - middle_row) / radius;
+        const float v = (static_cast<float>(column) - middle_column) / radius;
+        colour = colour * (look_.exposure * (1 - look_.vignetting * std::min(1.0F, u * u + v * v)));
+        if (look_.glare <= 0) continue;
+        const Ray ray = caster_.ray(d.x, d.y, d.z, 0);
+        const float towards =
+            (ray.dx * look_.sun_x + ray.dy * look_.sun_y + ray.tangent * look_.sun_slope) /
+            (slope * std::sqrt(1 + ray.tangent * ray.tangent));
+        const float veil =
+            look_.glare * (0.2F + 0.8F * std::max(0.0F, towards) * std::max(0.0F, towards));
+        colour = colour + Colour{veil, veil, veil};
+      }
+    }
+  }
+
+  // Three-tap passes whose variances add up to the blur's.
+  void blur() {
+    const float variance = look_.blur_px * look_.blur_px;
+    const int passes = static_cast<int>(std::ceil(variance / 0.5F));
+    if (variance < 0.02F) return;
+    const float side = variance / (2 * static_cast<float>(passes));
+    for (int pass = 0; pass < passes; ++pass) {
+      for (int row = 0; row < size_.height; ++row) filter(index(row, 0), 1, size_.width, side);
+      for (int column = 0; column < size_.width; ++column) {
+        filter(index(0, column), size_.width, size_.height, side);
+      }
+    }
+  }
+
+  Picture develop(std::uint32_t seed) const {
+    Picture picture{size_, {}};
+    picture.rgb.resize(colours_.size() * 3);
+    const std::vector<float> curve = tone_curve();
+    std::uint8_t* out = picture.rgb.data();
+    for (std::size_t i = 0; i < colours_.size(); ++i) {
+      for (const float light : {colours_[i].r, colours_[i].g, colours_[i].b}) {
+        const float clipped = std::clamp(light, 0.0F, 1.0F) * static_cast<float>(curve.size() - 2);
+        const auto k = static_cast<std::size_t>(clipped);
+        const float grey = mix(curve[k], curve[k + 1], clipped - static_cast<float>(k));
+        const std::uint32_t bits =
+            hash(static_cast<std::uint32_t>(i),
+                 static_cast<std::uint32_t>(out - picture.rgb.data()) % 3, seed);
+        *out++ =
+            static_cast<std::uint8_t>(std::clamp(grey + noise_at(grey, bits) + 0.5F, 0.0F, 255.0F));
+      }
+    }
+    return picture;
+  }
+
+  std::vector<int> take_surfaces() { return std::move(surfaces_); }
+
+ private:
+  std::size_t index(int row, int column) const {
+    return static_cast<std::size_t>(row) * size_.width + column;
+  }
+
+  bool on_edge(int row, int column) const {
+    const int here = surfaces_[index(row, column)];
+    return (row > 0 && surfaces_[index(row - 1, column)] != here) ||
+           (column > 0 && surfaces_[index(row, column - 1)] != here) ||
+           (row + 1 < size_.height && surfaces_[index(row + 1, column)] != here) ||
+           (column + 1 < size_.width && surfaces_[index(row, column + 1)] != here);
+  }
+
+  Colour averaged(int row, int column) const {
+    const Direction& d = rays_.at(row, column);
+    const Steps s = steps_at(rays_, row, column);
+    Colour sum;
+    for (const auto& place : kPlaces) {
+      const float u = place[0] / 16, v = place[1] / 16;
+      sum = sum + view_
+                      .trace(caster_.ray(d.x + u * s.right.x + v * s.down.x,
+                                         d.y + u * s.right.y + v * s.down.y,
+                                         d.z + u * s.right.z + v * s.down.z, s.pixel))
+                      .colour;
+    }
+    return sum * (1.0F / kPlaces.size());
+  }
+
+  void filter(std::size_t first, int step, int count, float side) {
+    Colour before = colours_[first];
+    for (int i = 0; i < count; ++i) {
+      Colour& here = colours_[first + static_cast<std::size_t>(i) * step];
+      const Colour after = i + 1 < count ? (&here)[step] : here;
+      const Colour own = here;
+      here = own * (1 - 2 * side) + (before + after) * side;
+      before = own;
+    }
+  }
+
+  // Grey level over light: a camera's gamma, then the picture's contrast.
+  std::vector<float> tone_curve() const {
+    constexpr int kSteps = 4096;
+    std::vector<float> curve;
+    for (int i = 0; i <= kSteps + 1; ++i) {
+      const float light = std::min(1.0F, static_cast<float>(i) / kSteps);
+      curve.push_back(255 * std::pow(light, look_.contrast / 2.2F));
+    }
+    return curve;
+  }
+
+  // Four bytes' sum is nearly normal, with a standard deviation of 147.8.
+  float noise_at(float grey, std::uint32_t bits) const {
+    const auto sum = static_cast<float>((bits & 255U) + ((bits >> 8) & 255U) +
+                                        ((bits >> 16) & 255U) + (bits >> 24));
+    return look_.noise * std::sqrt(0.3F + grey * (0.7F / 128)) * (sum - 510) * (1 / 147.8F);
+  }
+
+  const View& view_;
+  const Look& look_;
+  const PixelRays& rays_;
+  RayCaster caster_;
+  ImageSize size_;
+  std::vector<Colour> colours_;
+  std::vector<int> surfaces_;
+};
+
+}  // namespace
+
+PixelRays::PixelRays(const Camera& camera) : size_(camera.model->image_size()) {
+  directions_.resize(static_cast<std::size_t>(size_.width) * size_.height);
+  for (int row = 0; row < size_.height; ++row) {
+    for (int column = 0; column < size_.width; ++column) {
+      const auto i = static_cast<std::size_t>(row) * size_.width + column;
+      if (!camera.mask.empty() && camera.mask[i] == 0) continue;
+      const Pixel pixel{static_cast<double>(row), static_cast<double>(column)};
+      const Vec3 ray = camera.model->ray_from_pixel(pixel);
+      if (camera.mask.empty()) {
+        const auto back = camera.model->pixel_from_ray(ray);
+        if (!back || std::hypot(back->row - pixel.row, back->column - pixel.column) > 0.5) continue;
+      }
+      const Vec3 d = normalized(camera.robot_from_camera * ray);
+      directions_[i] = {static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)};
+    }
+  }
+}
+
+RayCaster::RayCaster(const Pose& pose)
+    : world_from_robot_(rotation_z(pose.heading) * rotation_y(pose.pitch) * rotation_x(pose.roll)) {
+}
+
+Ray RayCaster::ray(float x, float y, float z, float pixel) const {
+  const auto along = [&](const Vec3& axis) {
+    return static_cast<float>(axis.x) * x + static_cast<float>(axis.y) * y +
+           static_cast<float>(axis.z) * z;
+  };
+  const float dx = along(world_from_robot_.rows[0]), dy = along(world_from_robot_.rows[1]);
+  const float dz = along(world_from_robot_.rows[2]);
+  const float across = std::max(1e-6F, std::sqrt(dx * dx + dy * dy));
+  // Around the nadir a pixel spans more of the bearing, but never less of the ground.
+  return {dx / across, dy / across, dz / across,
+          pixel * std::sqrt(1 + (dz / across) * (dz / across))};
+}
+
+Picture draw(const View& view, const Look& look, const PixelRays& rays, const Pose& pose,
+             std::uint32_t noise_seed, std::vector<int>* surfaces) {
+  Drawing drawing(view, look, rays, pose);
+  drawing.trace();
+  drawing.smooth_edges();
+  drawing.vignette_and_glare();
+  drawing.blur();
+  Picture picture = drawing.develop(noise_seed);
+  if (surfaces != nullptr) *surfaces = drawing.take_surfaces();
+  return picture;
+}
+
+}  // namespace bole::simulate

@@ -1,0 +1,142 @@
+#include "simulate/recording.h"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "base/errors.h"
+#include "base/files.h"
+#include "geometry/angles.h"
+#include "simulate/image_files.h"
+
+namespace bole::simulate {
+namespace {
+
+std::string side_name(ImageSide side) {
+  switch (side) {
+    case ImageSide::up:
+      return "image up";
+    case ImageSide::down:
+      return "image down";
+    case ImageSide::left:
+      return "image left";
+    case ImageSide::right:
+      break;
+  }
+  return "image right";
+}
+
+nlohmann::ordered_json tree_json(const TreeTruth& t) {
+  return {{"id", t.id},
+          {"x", t.x},
+          {"y", t.y},
+          {"z", t.z},
+          {"diameter", t.diameter},
+          {"range", t.range},
+          {"bearing", t.bearing},
+          {"visible", t.visible},
+          {"foot_visible", t.foot_visible},
+          {"base_elevation", t.base_elevation},
+          {"angular_width", t.angular_width},
+          {"lean_x", t.lean_x},
+          {"lean_y", t.lean_y},
+          {"bright", t.bright}};
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+  write_file_atomically(path, std::as_bytes(std::span(text)));
+}
+
+std::string frame_name(int k, const std::string& format) {
+  char name[64];
+  (void)std::snprintf(name, sizeof name, "frame_%06d.%s", k, format.c_str());
+  return name;
+}
+
+// Encodes pictures in the one format of a recording.
+class Encoder {
+ public:
+  Encoder(const std::string& format, ImageSize size) : format_(format) {
+    if (format == "png" || format == "jpg") return;
+    raw_ = pixel_format_from_name(format);
+    if (!raw_) {
+      throw ConfigError("--format", "", "\"" + format + "\" is not known",
+                        "must be png, jpg, or a raw pixel format such as yuyv, nv12, grey, rggb");
+    }
+    if (*raw_ == PixelFormat::mjpeg) return;
+    const std::vector<std::byte> bytes(packed_frame_bytes(*raw_, size));
+    if (!view_packed(*raw_, size, bytes)) {
+      throw ConfigError("--format", "", format + " needs an even image size",
+                        "take png, jpg or grey");
+    }
+  }
+
+  std::vector<std::byte> encode(const Picture& picture) const {
+    if (raw_) return encode_raw(picture, *raw_);
+    return format_ == "png" ? encode_png(picture) : encode_jpeg(picture, 92);
+  }
+
+ private:
+  std::string format_;
+  std::optional<PixelFormat> raw_;
+};
+
+void copy_camera(const std::filesystem::path& folder, const Camera& camera) {
+  write_text(folder / "camera.toml", camera.config_text);
+  const auto from = camera.file.parent_path();
+  for (const std::string& name : {camera.config.calibration, camera.config.mask}) {
+    if (name.empty()) continue;
+    constexpr std::size_t kLargest = 1U << 26;
+    write_file_atomically(folder / name, read_file(from / name, kLargest));
+  }
+}
+
+}  // namespace
+
+std::string truth_json(const CameraConfig& config, const std::vector<FrameTruth>& frames) {
+  const Mount& mount = config.mount;
+  nlohmann::ordered_json json = {
+      {"metric", true},
+      {"mount", {{"forward", side_name(mount.forward)}, {"left", side_name(mount.left)}}},
+      {"height_m", mount.height},
+      {"roll_deg", degrees(mount.roll)},
+      {"pitch_deg", degrees(mount.pitch)},
+      {"yaw_deg", degrees(mount.yaw)},
+      {"frames", nlohmann::ordered_json::array()}};
+  for (const FrameTruth& frame : frames) {
+    nlohmann::ordered_json trees = nlohmann::ordered_json::array();
+    for (const TreeTruth& tree : frame.trees) trees.push_back(tree_json(tree));
+    const Pose& pose = frame.pose;
+    json["frames"].push_back({{"file", frame.file},
+                              {"utime", frame.utime},
+                              {"world", frame.world},
+                              {"pose",
+                               {{"x", pose.x},
+                                {"y", pose.y},
+                                {"heading", pose.heading},
+                                {"roll", pose.roll},
+                                {"pitch", pose.pitch}}},
+                              {"trees", trees}});
+  }
+  return json.dump(1) + "\n";
+}
+
+void record(const std::filesystem::path& folder, const Camera& camera,
+            const RecordingOptions& options, const std::function<void(int)>& progress) {
+  const Encoder encoder(options.format, camera.model->image_size());
+  copy_camera(folder, camera);
+  Simulator simulator(options.world, options.seed, camera, options.frames);
+  std::vector<FrameTruth> truths;
+  std::string stamps;
+  for (int k = 0; k < options.frames; ++k) {
+    SimFrame frame = simulator.frame(k);
+    frame.truth.file = frame_name(k, options.format);
+    write_file_atomically(folder / frame.truth.file, encoder.encode(frame.picture));
+    stamps += frame.truth.file + "," + std::to_string(frame.truth.utime) + "\n";
+    truths.push_back(std::move(frame.truth));
+    progress(k + 1);
+  }
+  write_text(folder / "timestamps.csv", stamps);
+  write_text(folder / "truth.json", truth_json(camera.config, truths));
+}
+
+}  // namespace bole::simulate
