@@ -1,5 +1,7 @@
 #include "geometry/mount.h"
 
+#include <cmath>
+
 namespace bole {
 namespace {
 
@@ -31,6 +33,12 @@ Mat3 robot_from_omni_camera(const Mount& mount) {
 
 Mat3 robot_from_forward_camera(const Mount& mount) {
   return small_rotation(mount) * Mat3{{Vec3{0, 0, 1}, Vec3{-1, 0, 0}, Vec3{0, -1, 0}}};
+}
+
+// After the roll the ray has a forward and an upward part; the pitch turns the latter into zero.
+double pitch_of_forward_camera(const Vec3& ray, double roll) {
+  const double up = -ray.x * std::sin(roll) - ray.y * std::cos(roll);
+  return std::atan2(up, ray.z);
 }
 
 }  // namespace bole

@@ -25,4 +25,8 @@ Mat3 robot_from_omni_camera(const Mount& mount);
 /// mount's sides are not used.
 Mat3 robot_from_forward_camera(const Mount& mount);
 
+/// The pitch of a camera that looks ahead, mounted with `roll`, for which `ray` (in the camera's
+/// own frame) is level.
+double pitch_of_forward_camera(const Vec3& ray, double roll);
+
 }  // namespace bole

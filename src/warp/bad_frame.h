@@ -1,0 +1,24 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+#include "base/image.h"
+
+namespace bole {
+
+/// A frame that cannot be used: damaged, cut short, or not of the size that was calibrated. It is
+/// dropped and counted; the next one may be good.
+class BadFrame : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+  BadFrame(ImageSize got, ImageSize expected)
+      : std::runtime_error("is " + text(got) + ", the calibration's image is " + text(expected)) {}
+
+ private:
+  static std::string text(ImageSize size) {
+    return std::to_string(size.width) + " x " + std::to_string(size.height);
+  }
+};
+
+}  // namespace bole

@@ -1,0 +1,60 @@
+#include "warp/table_cache.h"
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
+
+#include "base/errors.h"
+
+namespace bole {
+namespace {
+
+std::string file_name(std::uint32_t digest) {
+  std::array<char, 32> name{};
+  const int length = std::snprintf(name.data(), name.size(), "warp-%08x.table", digest);
+  return {name.data(), static_cast<std::size_t>(length)};
+}
+
+std::optional<WarpTable> load(const std::filesystem::path& path, std::uint32_t digest) {
+  try {
+    return WarpTable::load(path, digest);
+  } catch (const ConfigError&) {
+    return std::nullopt;  // built anew; what was wrong with it does not matter
+  }
+}
+
+}  // namespace
+
+std::filesystem::path default_cache_directory() {
+  // systemd may list several directories; the first is ours.
+  if (const char* const list = std::getenv("CACHE_DIRECTORY")) {
+    const std::string first(list);
+    return first.substr(0, first.find(':'));
+  }
+  if (const char* const cache = std::getenv("XDG_CACHE_HOME")) {
+    return std::filesystem::path(cache) / "bole";
+  }
+  if (const char* const home = std::getenv("HOME")) {
+    return std::filesystem::path(home) / ".cache" / "bole";
+  }
+  return {};
+}
+
+CachedTable load_or_build_warp_table(const Camera& camera,
+                                     const std::filesystem::path& cache_directory) {
+  if (cache_directory.empty()) return {build_warp_table(camera), true, "no cache directory is set"};
+  const std::filesystem::path path = cache_directory / file_name(camera.digest);
+  if (std::optional<WarpTable> found = load(path, camera.digest)) {
+    return {std::move(*found), false, ""};
+  }
+  CachedTable result{build_warp_table(camera), true, ""};
+  try {
+    result.table.store(path);
+  } catch (const ConfigError& error) {
+    result.trouble = error.what();
+  }
+  return result;
+}
+
+}  // namespace bole
