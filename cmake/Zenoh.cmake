@@ -16,9 +16,8 @@ if(BOLE_ZENOH)
     string(REGEX MATCH "[0-9]+\\.[0-9]+" cargo_version "${cargo_version}")
   endif()
   if(NOT CARGO OR cargo_version VERSION_LESS rust_version)
-    message(WARNING "Going on without Zenoh: cargo ${rust_version} or newer is not here "
-      "(found: ${CARGO} ${cargo_version}). To have it, install cargo (Debian 13), cargo-web "
-      "(Debian 12) or rustup, then configure anew; -DBOLE_ZENOH=OFF silences this.")
+    message(WARNING "Going on without Zenoh: no cargo ${rust_version} or newer. To have it, install "
+      "cargo (Debian 13), cargo-web (Debian 12) or rustup, and configure anew.")
     unset(CARGO CACHE)
     set(BOLE_ZENOH OFF)
   endif()
