@@ -60,19 +60,4 @@ void warp_strays(const WarpStrip& strip) {
   }
 }
 
-void warp_rows_plain(const WarpTable& table, const SampledImage& image, int first, int last,
-                     WarpOutput out) {
-  for (int row = first; row < last; row += kTileRows) {
-    const WarpStrip strip{table, image, row / kTileRows, std::min(kTileRows, last - row), out};
-    for (int tile = 0; tile < table.tiles_per_strip(); ++tile) warp_tile_plain(strip, tile);
-    warp_strays(strip);
-    out.pixels += static_cast<std::ptrdiff_t>(kTileRows) * out.stride;
-  }
-}
-
-void warp_rows(const WarpTable& table, const SampledImage& image, int first, int last,
-               WarpOutput out) {
-  warp_rows_plain(table, image, first, last, out);
-}
-
 }  // namespace bole
