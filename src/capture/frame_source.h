@@ -3,6 +3,7 @@
 #include <chrono>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "capture/drops.h"
 #include "capture/frame.h"
@@ -50,6 +51,11 @@ class FrameSource {
   virtual std::chrono::nanoseconds frame_period() const = 0;
   /// One line for logs and the status: device, format, size, rate as negotiated.
   virtual std::string description() const = 0;
+  /// What was asked for at the last open() and the camera would not do, a line each.
+  virtual std::vector<std::string> refused() const { return {}; }
+  /// Tells how bright the panorama of a recent frame is: the mean of its seen pixels, 0 to 255. A
+  /// camera whose exposure we meter acts on it. From any thread.
+  virtual void metered(double /*mean*/) noexcept {}
 };
 
 }  // namespace bole

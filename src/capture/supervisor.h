@@ -52,6 +52,7 @@ struct CaptureCounts {
   std::int64_t stalls = 0;    ///< times frames stopped
   std::int64_t restarts = 0;  ///< times a stalled camera was closed and opened again
   std::int64_t failed_opens = 0;
+  std::int64_t settings_refused = 0;  ///< by the camera, at all openings
 };
 
 /// Keeps a camera going: opens it, judges whether it streams, and when it stalls or goes away waits

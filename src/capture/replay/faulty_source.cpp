@@ -54,6 +54,8 @@ class FaultySource : public FrameSource {
   }
   std::chrono::nanoseconds frame_period() const override { return inner_->frame_period(); }
   std::string description() const override { return inner_->description() + ", with faults"; }
+  std::vector<std::string> refused() const override { return inner_->refused(); }
+  void metered(double mean) noexcept override { inner_->metered(mean); }
 
  private:
   struct Waiting {

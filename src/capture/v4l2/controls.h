@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "capture/camera_settings.h"
+#include "capture/exposure.h"
+#include "capture/v4l2/device.h"
+
+namespace bole {
+
+/// Sets exposure, gain, white balance and power-line frequency as far as they are asked for.
+/// Returns a line for each that the camera refused or changed: "gain = 300: the camera has 255".
+std::vector<std::string> apply_controls(const V4l2Device& device, const CameraSettings& settings);
+
+/// Sets the exposure time, clamped to what the camera can. False when it refuses.
+bool set_exposure(const V4l2Device& device, int exposure_us);
+
+/// The exposure times that the camera can, in microseconds; {0, 0} when it does not say.
+ExposureRange exposure_range(const V4l2Device& device);
+
+}  // namespace bole

@@ -1,0 +1,80 @@
+#include "capture/exposure.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace bole {
+namespace {
+
+// A scene before a camera that shows a new exposure `delay` frames later.
+class Scene {
+ public:
+  Scene(double light, double gamma, int start_us) : light_(light), gamma_(gamma) {
+    pipeline_.fill(start_us);
+  }
+  double mean() {
+    const double exposure_us = pipeline_.front();
+    std::rotate(pipeline_.begin(), pipeline_.begin() + 1, pipeline_.end());
+    pipeline_.back() = exposure_us_ > 0 ? exposure_us_ : pipeline_[1];
+    return 255 * std::pow(std::min(light_ * exposure_us, 1.0), 1 / gamma_);
+  }
+  void set(int exposure_us) { exposure_us_ = exposure_us; }
+
+ private:
+  double light_;
+  double gamma_;
+  double exposure_us_ = 0;
+  std::array<double, 3> pipeline_{};
+};
+
+struct Settled {
+  double mean;
+  int changes_at_the_end;
+};
+
+Settled settle(double light, double gamma, ExposureRange range) {
+  constexpr int kStartUs = 10'000;
+  ExposureController controller(range, kStartUs);
+  Scene scene(light, gamma, kStartUs);
+  Settled settled{};
+  for (int frame = 0; frame < 200; ++frame) {
+    settled.mean = scene.mean();
+    if (const auto exposure_us = controller.update(settled.mean)) {
+      EXPECT_GE(*exposure_us, range.min_us);
+      EXPECT_LE(*exposure_us, range.max_us);
+      scene.set(*exposure_us);
+      if (frame >= 150) ++settled.changes_at_the_end;
+    }
+  }
+  return settled;
+}
+
+TEST(Exposure, SettlesOnTheTargetWithoutSwinging) {
+  for (const double gamma : {1.0, 2.2}) {
+    for (const double light : {1e-5, 4e-5, 1e-3, 2e-3}) {
+      const Settled settled = settle(light, gamma, {100, 200'000});
+      EXPECT_NEAR(settled.mean, ExposureController::kTarget, 0.12 * ExposureController::kTarget)
+          << gamma << " " << light;
+      EXPECT_EQ(settled.changes_at_the_end, 0) << gamma << " " << light;
+    }
+  }
+}
+
+TEST(Exposure, StaysWithinWhatTheCameraCan) {
+  EXPECT_LT(settle(1e-6, 1, {100, 20'000}).mean, 20);
+  EXPECT_EQ(settle(1e-6, 1, {100, 20'000}).changes_at_the_end, 0);
+  EXPECT_GT(settle(1, 1, {5'000, 20'000}).mean, 250);
+}
+
+TEST(Exposure, LeavesAWellExposedPictureAlone) {
+  ExposureController controller({100, 20'000}, 10'000);
+  EXPECT_FALSE(controller.update(ExposureController::kTarget * 1.05));
+  EXPECT_FALSE(controller.update(ExposureController::kTarget * 0.95));
+  EXPECT_TRUE(controller.update(ExposureController::kTarget * 0.8));
+}
+
+}  // namespace
+}  // namespace bole
