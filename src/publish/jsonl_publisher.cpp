@@ -4,8 +4,10 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
-#include <string_view>
+#include <climits>
 #include <system_error>
 
 #include "base/errors.h"
@@ -16,23 +18,6 @@ namespace bole {
 namespace {
 
 std::string reason(int error) { return std::generic_category().message(error); }
-
-void wait_until_writable(int fd) {
-  pollfd entry{fd, POLLOUT, 0};
-  ::poll(&entry, 1, -1);
-}
-
-void write_all(int fd, std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t written = ::write(fd, text.data(), text.size());
-    if (written < 0 && errno == EAGAIN) {
-      wait_until_writable(fd);
-    } else if (written < 0 && errno != EINTR) {
-      throw BusError("cannot be written: " + reason(errno));
-    }
-    if (written > 0) text.remove_prefix(static_cast<std::size_t>(written));
-  }
-}
 
 }  // namespace
 
@@ -49,7 +34,24 @@ void JsonlPublisher::publish(MessageKind kind, std::span<const std::byte> bytes,
                              const std::string& file) {
   if (kind != MessageKind::trees) return;
   write_json_line(decode_tree_list(bytes), file, line_);
-  write_all(fd_.get(), line_);
+  write_all(line_);
+}
+
+// A pipe that polls as writable takes PIPE_BUF bytes at once: a reader that has stopped reading can
+// so never keep us from being interrupted.
+void JsonlPublisher::write_all(std::string_view text) {
+  while (!text.empty()) {
+    std::array<pollfd, 2> waits{pollfd{fd_.get(), POLLOUT, 0},
+                                pollfd{interrupted_.fd(), POLLIN, 0}};
+    ::poll(waits.data(), waits.size(), -1);
+    if (waits[1].revents != 0) throw BusError("was interrupted: its reader does not read");
+    const ssize_t written =
+        ::write(fd_.get(), text.data(), std::min<std::size_t>(text.size(), PIPE_BUF));
+    if (written < 0 && errno != EINTR && errno != EAGAIN) {
+      throw BusError("cannot be written: " + reason(errno));
+    }
+    if (written > 0) text.remove_prefix(static_cast<std::size_t>(written));
+  }
 }
 
 }  // namespace bole

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 #include "base/files.h"
+#include "base/wakeup.h"
 #include "publish/publisher.h"
 
 namespace bole {
@@ -17,9 +19,13 @@ class JsonlPublisher : public Publisher {
   std::string name() const override { return "jsonl"; }
   void publish(MessageKind kind, std::span<const std::byte> bytes,
                const std::string& file) override;
+  void interrupt() noexcept override { interrupted_.raise(); }
 
  private:
+  void write_all(std::string_view text);
+
   UniqueFd fd_;
+  Wakeup interrupted_;
   std::string line_;
 };
 

@@ -26,6 +26,8 @@ class Publisher {
   /// name, empty for a camera. Throws BusError when the bus does not take it.
   virtual void publish(MessageKind kind, std::span<const std::byte> bytes,
                        const std::string& file) = 0;
+  /// Makes a publish() that waits, and all later ones, give up. From any thread.
+  virtual void interrupt() noexcept {}
 };
 
 }  // namespace bole

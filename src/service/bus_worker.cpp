@@ -1,0 +1,109 @@
+#include "service/bus_worker.h"
+
+#include <algorithm>
+#include <bit>
+
+#include <spdlog/spdlog.h>
+
+#include "base/clock.h"
+#include "publish/encoder.h"
+
+namespace bole {
+namespace {
+
+constexpr std::size_t slot_of(MessageKind kind) { return static_cast<std::size_t>(kind); }
+
+std::size_t handover_bin(std::int64_t ns) {
+  const auto us = static_cast<std::uint64_t>(std::max<std::int64_t>(ns, 0) / 1000);
+  return std::min<std::size_t>(std::bit_width(us), bus_t::HANDOVER_BINS - 1);
+}
+
+float us(std::int64_t ns) { return static_cast<float>(ns) / 1000; }
+
+}  // namespace
+
+BusWorker::BusWorker(std::unique_ptr<Publisher> publisher, WhenFull when_full,
+                     std::function<void()> on_finished)
+    : publisher_(std::move(publisher)),
+      when_full_(when_full),
+      on_finished_(std::move(on_finished)) {
+  health_.name = publisher_->name();
+  health_.healthy = 1;
+  for (Message& message : outgoing_) message.bytes.reserve(kDatagramBytes);
+  thread_ = std::thread([this] { run(); });
+}
+
+BusWorker::~BusWorker() {
+  close();
+  thread_.join();
+}
+
+void BusWorker::offer(MessageKind kind, std::span<const std::byte> bytes, std::string_view file,
+                      std::int64_t processed_ns) {
+  Message& message = outgoing_.at(slot_of(kind));
+  message.bytes.assign(bytes.begin(), bytes.end());
+  message.file.assign(file);
+  message.processed_ns = processed_ns;
+  const WhenFull when_full = kind == MessageKind::trees ? when_full_ : WhenFull::overwrite;
+  if (mailbox_.put(message, when_full, slot_of(kind)) && kind == MessageKind::trees) {
+    const std::lock_guard lock(mutex_);
+    ++health_.overwritten;
+  }
+}
+
+void BusWorker::run() {
+  Message message;
+  while (const auto slot = mailbox_.take(message)) {
+    publish(static_cast<MessageKind>(*slot), message);
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    finished_ = true;
+  }
+  on_finished_();
+}
+
+void BusWorker::publish(MessageKind kind, const Message& message) {
+  try {
+    publisher_->publish(kind, message.bytes, message.file);
+    record_success(kind, SystemClock().mono_ns() - message.processed_ns);
+  } catch (const std::exception& error) {
+    record_failure(kind, error.what());
+  }
+}
+
+void BusWorker::record_success(MessageKind kind, std::int64_t handover_ns) {
+  const std::lock_guard lock(mutex_);
+  if (std::exchange(failures_in_a_row_, 0) > 0) spdlog::info("{}: publishing again", health_.name);
+  health_.healthy = 1;
+  if (kind != MessageKind::trees) return;
+  ++health_.published;
+  ++health_.handover_histogram[handover_bin(handover_ns)];
+  handover_.add(handover_ns);
+}
+
+void BusWorker::record_failure(MessageKind kind, const std::string& reason) {
+  const std::lock_guard lock(mutex_);
+  if (failures_in_a_row_++ == 0 || reason != health_.last_error) {
+    spdlog::error("{}: {} (tried again with every message)", health_.name, reason);
+  }
+  health_.healthy = 0;
+  health_.last_error = reason;
+  if (kind == MessageKind::trees) ++health_.failed;
+}
+
+bool BusWorker::finished() const {
+  const std::lock_guard lock(mutex_);
+  return finished_;
+}
+
+bus_t BusWorker::health() const {
+  const std::lock_guard lock(mutex_);
+  bus_t health = health_;
+  health.handover_p50_us = us(handover_.quantile(0.5));
+  health.handover_p99_us = us(handover_.quantile(0.99));
+  health.handover_max_us = us(handover_.max());
+  return health;
+}
+
+}  // namespace bole

@@ -1,0 +1,95 @@
+#include "service/daemon.h"
+
+#include <sys/mman.h>
+#include <sys/resource.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include <spdlog/spdlog.h>
+
+#include "base/clock.h"
+#include "service/make_publishers.h"
+#include "service/make_source.h"
+#include "service/pipeline.h"
+#include "warp/table_cache.h"
+
+namespace bole {
+namespace {
+
+WarpTable open_table(const DaemonConfig::CameraPart& part, const Camera& camera) {
+  if (!part.table.empty()) return WarpTable::load(part.table, camera.digest);
+  CachedTable cached = load_or_build_warp_table(
+      camera, part.cache_directory.empty() ? default_cache_directory() : part.cache_directory);
+  if (cached.built) spdlog::info("built the warp table");
+  if (!cached.trouble.empty()) spdlog::warn("the warp table is not kept: {}", cached.trouble);
+  return std::move(cached.table);
+}
+
+void lock_memory() {
+  if (::mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
+    spdlog::warn("service.lock_memory: {}; grant CAP_IPC_LOCK or raise LimitMEMLOCK",
+                 std::strerror(errno));
+  }
+}
+
+double cpu_seconds() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+void log_summary(const Telemetry::Summary& summary, const std::vector<bus_t>& buses,
+                 double elapsed) {
+  const auto ms = [](std::int64_t ns) { return static_cast<double>(ns) / 1e6; };
+  std::string drops;
+  for (const counter_t& drop : summary.drops) {
+    if (drop.count > 0) drops += " " + drop.name + " " + std::to_string(drop.count);
+  }
+  spdlog::info("replay: {} frames, {} lists, drops:{}", summary.frames, summary.lists,
+               drops.empty() ? " none" : drops);
+  spdlog::info("latency p50 {:.2f} ms, p99 {:.2f} ms, max {:.2f} ms; CPU {:.2f} s in {:.2f} s",
+               ms(summary.latency_p50_ns), ms(summary.latency_p99_ns), ms(summary.latency_max_ns),
+               cpu_seconds(), elapsed);
+  for (const bus_t& bus : buses) {
+    spdlog::info("{}: {} published, {} overwritten, {} failed, hand-over p99 {:.0f} us", bus.name,
+                 bus.published, bus.overwritten, bus.failed, bus.handover_p99_us);
+  }
+}
+
+}  // namespace
+
+void run_daemon(const DaemonConfig& config, const std::string& version, int stop_fd) {
+  const Camera camera = load_camera(config.camera.file);
+  const WarpTable table = open_table(config.camera, camera);
+  SourceSetup setup = make_source(config, camera);
+  std::vector<std::unique_ptr<Publisher>> publishers = make_publishers(config);
+
+  ProcessorOptions options;
+  options.mode = config.detect.mode;
+  options.track = config.detect.track;
+  options.min_score = config.publish.min_score;
+  options.camera = config.camera.name;
+  options.config_crc = config_crc(config, camera.digest);
+  options.source = setup.kind;
+  options.lockstep = setup.lockstep;
+  Processor processor(table, camera.config.mount.height, camera.config.search, options,
+                      *setup.clock);
+  Telemetry telemetry(version, config.camera.name);
+  if (config.service.lock_memory) lock_memory();
+
+  const SystemClock clock;
+  const std::int64_t start_ns = clock.mono_ns();
+  Pipeline pipeline(*setup.source, *setup.clock, processor, telemetry, std::move(publishers),
+                    setup.lockstep, config.service.realtime_priority);
+  pipeline.run(stop_fd);
+  if (setup.kind == ListSource::replay) {
+    log_summary(telemetry.summary(), pipeline.bus_health(),
+                static_cast<double>(clock.mono_ns() - start_ns) / 1e9);
+  }
+}
+
+}  // namespace bole

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "service/daemon_config.h"
+
+namespace bole {
+
+/// Runs a daemon: refuses what is damaged or does not fit (ConfigError) before it touches the
+/// camera, then runs until a replay ends or `stop_fd` becomes readable. A replay is summed up in
+/// the log.
+void run_daemon(const DaemonConfig& config, const std::string& version, int stop_fd);
+
+}  // namespace bole

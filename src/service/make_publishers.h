@@ -1,0 +1,15 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "publish/publisher.h"
+#include "service/daemon_config.h"
+
+namespace bole {
+
+/// The buses that the configuration names, in its order. Throws ConfigError for one that cannot be:
+/// a file that cannot be written, a bus that this build does not have.
+std::vector<std::unique_ptr<Publisher>> make_publishers(const DaemonConfig& config);
+
+}  // namespace bole

@@ -1,0 +1,47 @@
+#include "service/make_source.h"
+
+#include <string_view>
+
+#include "base/errors.h"
+#include "capture/replay/replay_source.h"
+
+namespace bole {
+namespace {
+
+SourceSetup make_replay(const DaemonConfig::SourcePart& part, const std::string& path,
+                        const Camera& camera) {
+  ReplayOptions options;
+  options.path = path;
+  options.size = camera.model->image_size();
+  if (!camera.config.mask.empty()) options.mask = camera.file.parent_path() / camera.config.mask;
+  options.pace = parse_replay_pace(part.pace);
+  options.loop = part.loop;
+  options.start_s = part.start;
+  options.end_s = part.end;
+  options.restamp = part.restamp;
+  options.rate_hz = part.rate;
+
+  SourceSetup setup;
+  setup.lockstep = options.pace.kind == ReplayPace::Kind::lockstep;
+  if (setup.lockstep) {
+    setup.clock = std::make_unique<ReplayClock>();
+  } else {
+    setup.clock = std::make_unique<SystemClock>();
+  }
+  setup.source = make_replay_source(options, *setup.clock);
+  return setup;
+}
+
+}  // namespace
+
+SourceSetup make_source(const DaemonConfig& config, const Camera& camera) {
+  const std::string& uri = config.source.uri;
+  const std::size_t colon = uri.find(':');
+  const std::string scheme = uri.substr(0, colon);
+  const std::string rest = colon == std::string::npos ? "" : uri.substr(colon + 1);
+  if (scheme == "replay" && !rest.empty()) return make_replay(config.source, rest, camera);
+  throw ConfigError("source", "uri", uri.empty() ? "is missing" : "is \"" + uri + "\"",
+                    "must be v4l2:DEVICE, libcamera:ID or replay:PATH");
+}
+
+}  // namespace bole

@@ -1,0 +1,176 @@
+#include "service/pipeline.h"
+
+#include <poll.h>
+#include <pthread.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <system_error>
+
+#include <spdlog/spdlog.h>
+
+namespace bole {
+namespace {
+
+constexpr std::int64_t kHeartbeatNs = 1'000'000'000;
+constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t kBusPatienceNs = 500'000'000;  // for a bus to end when we are stopped
+
+void set_realtime(std::thread& thread, int priority) {
+  const sched_param parameters{priority};
+  if (const int error = ::pthread_setschedparam(thread.native_handle(), SCHED_FIFO, &parameters)) {
+    spdlog::warn("service.realtime_priority: {}; grant CAP_SYS_NICE or raise LimitRTPRIO",
+                 std::generic_category().message(error));
+  }
+}
+
+std::int64_t now_ns() { return SystemClock().mono_ns(); }
+
+}  // namespace
+
+Pipeline::Pipeline(FrameSource& source, Clock& clock, Processor& processor, Telemetry& telemetry,
+                   std::vector<std::unique_ptr<Publisher>> publishers, bool lockstep,
+                   int realtime_priority)
+    : clock_(clock),
+      processor_(processor),
+      telemetry_(telemetry),
+      lockstep_(lockstep),
+      when_full_(lockstep ? WhenFull::wait : WhenFull::overwrite),
+      realtime_priority_(realtime_priority),
+      supervisor_(source, clock, [this](const CameraEvent& event) { on_camera(event); }) {
+  for (auto& publisher : publishers) {
+    buses_.push_back(std::make_unique<BusWorker>(std::move(publisher), when_full_,
+                                                 [this] { attention_.raise(); }));
+  }
+}
+
+Pipeline::~Pipeline() {
+  supervisor_.interrupt();
+  frames_.close();
+  for (const auto& bus : buses_) {
+    bus->close();
+    bus->interrupt();
+  }
+  for (std::thread* thread : {&capture_thread_, &process_thread_}) {
+    if (thread->joinable()) thread->join();
+  }
+}
+
+void Pipeline::on_camera(const CameraEvent& event) {
+  telemetry_.capture_event(event);
+  service_manager_.status(std::string(name(event.state)) + ": " + event.reason);
+  if (event.state == CameraState::no_camera || event.state == CameraState::stalled) {
+    service_manager_.ready();
+  }
+  status_due_ = true;
+  attention_.raise();
+}
+
+void Pipeline::capture() {
+  Captured captured;
+  for (bool more = true; more;) {
+    Grab grab = supervisor_.next();
+    telemetry_.capture_counts(supervisor_.counts());
+    more = grab.kind != Grab::Kind::end && grab.kind != Grab::Kind::interrupted;
+    if (grab.kind == Grab::Kind::frame) {
+      captured = {std::move(grab.frame), now_ns()};
+      if (frames_.put(captured, when_full_)) telemetry_.overwritten();
+      captured = {};  // an overwritten frame's buffer goes home
+    }
+    if (!grab.reason.empty()) telemetry_.bad_frame(grab.reason);
+    if (supervisor_.state() != CameraState::streaming) {
+      service_manager_.progress();  // the camera is properly being waited for
+    }
+  }
+  frames_.close();
+}
+
+void Pipeline::process() {
+  Captured captured;
+  while (frames_.take(captured)) {
+    try {
+      process(captured);
+    } catch (const std::exception& error) {
+      telemetry_.unusable(captured.frame.file(), error.what());
+    }
+    captured = {};
+    service_manager_.progress();
+    service_manager_.ready();
+  }
+  processed_all_ = true;
+  attention_.raise();
+}
+
+void Pipeline::process(const Captured& captured) {
+  const Processor::Result result = processor_.process(captured.frame);
+  const std::int64_t done_ns = now_ns();
+  for (const auto& bus : buses_) {
+    bus->offer(MessageKind::trees, result.bytes, captured.frame.file(), done_ns);
+  }
+  // In lockstep the stamps are the replay's; what passes on the computer's own clock is told.
+  const std::int64_t latency_ns =
+      lockstep_ ? done_ns - captured.taken_ns : result.publish_mono_ns - result.captured.mono_ns;
+  telemetry_.processed(latency_ns, processor_.trees_rejected());
+}
+
+void Pipeline::publish_status(bool stopping) {
+  const std::int64_t at_ns = now_ns();
+  status_t status = telemetry_.status(at_ns, stopping);
+  status.utime = clock_.utc_us();
+  status.mono_ns = clock_.mono_ns();
+  status.buses = bus_health();
+  encode_status(std::move(status), status_bytes_);
+  for (const auto& bus : buses_) bus->offer(MessageKind::status, status_bytes_, "", at_ns);
+}
+
+std::vector<bus_t> Pipeline::bus_health() const {
+  std::vector<bus_t> health;
+  for (const auto& bus : buses_) health.push_back(bus->health());
+  return health;
+}
+
+bool Pipeline::finished() const {
+  return processed_all_ &&
+         std::ranges::all_of(buses_, [](const auto& bus) { return bus->finished(); });
+}
+
+void Pipeline::run(int stop_fd) {
+  capture_thread_ = std::thread([this] { capture(); });
+  process_thread_ = std::thread([this] { process(); });
+  if (realtime_priority_ > 0) {
+    set_realtime(capture_thread_, realtime_priority_);
+    set_realtime(process_thread_, realtime_priority_);
+  }
+  std::int64_t next_beat_ns = 0;
+  std::int64_t give_up_ns = kNever;
+  bool closing = false;
+  while (!finished() && now_ns() < give_up_ns) {
+    if (processed_all_ && !closing) {
+      closing = true;
+      publish_status(true);
+      for (const auto& bus : buses_) bus->close();
+    }
+    if (!closing && (status_due_.exchange(false) || now_ns() >= next_beat_ns)) {
+      publish_status(false);
+      next_beat_ns = now_ns() + kHeartbeatNs;
+    }
+    const std::int64_t until_ns = closing ? give_up_ns : std::min(next_beat_ns, give_up_ns);
+    if (wait(give_up_ns == kNever ? stop_fd : -1, until_ns)) {
+      service_manager_.stopping();
+      supervisor_.interrupt();
+      give_up_ns = now_ns() + kBusPatienceNs;
+    }
+  }
+}
+
+bool Pipeline::wait(int stop_fd, std::int64_t until_ns) {
+  const std::int64_t wait_ms =
+      std::clamp<std::int64_t>((until_ns - now_ns()) / 1'000'000 + 1, 0, 1000);
+  std::array<pollfd, 2> waits{pollfd{stop_fd, POLLIN, 0}, pollfd{attention_.fd(), POLLIN, 0}};
+  ::poll(waits.data(), waits.size(), static_cast<int>(wait_ms));
+  attention_.take();
+  return waits[0].revents != 0;
+}
+
+}  // namespace bole

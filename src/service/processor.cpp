@@ -1,0 +1,59 @@
+#include "service/processor.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace bole {
+namespace {
+
+// After a gap as long as this (a loop of a replay, a camera that was away) the trees of before say
+// nothing about those of now.
+constexpr double kLongestGap = 2.0;  // seconds
+
+}  // namespace
+
+Processor::Processor(const WarpTable& table, double camera_height, const Search& search,
+                     ProcessorOptions options, const Clock& clock)
+    : warper_(table),
+      detector_(
+          make_detector(options.mode, {table.panorama(), table.seen(), camera_height, search})),
+      options_(std::move(options)),
+      clock_(clock) {
+  list_.camera = options_.camera;
+  list_.config_crc = options_.config_crc;
+  list_.source = options_.source;
+  list_.seq = -1;
+  trees_.reserve(256);
+}
+
+void Processor::choose(std::span<const Tree> found) {
+  trees_.clear();
+  std::ranges::copy_if(found, std::back_inserter(trees_), [this](const Tree& tree) {
+    return tree.score >= static_cast<float>(options_.min_score);
+  });
+}
+
+void Processor::track(std::int64_t captured_ns) {
+  const double elapsed =
+      static_cast<double>(captured_ns - last_captured_ns_.value_or(captured_ns)) / 1e9;
+  if (last_captured_ns_ && (elapsed <= 0 || elapsed > kLongestGap)) tracker_.reset();
+  tracker_.update(trees_, std::max(elapsed, 0.0));
+  last_captured_ns_ = captured_ns;
+}
+
+Processor::Result Processor::process(const Frame& frame) {
+  const PanoramaView panorama = warper_.warp(frame.image());
+  choose(detector_->detect(panorama));
+  const FrameTime captured = frame_time(frame.stamp(), clock_);
+  if (options_.track) track(captured.mono_ns);
+
+  list_.utime = captured.utc_us;
+  list_.capture_mono_ns = captured.mono_ns;
+  list_.publish_mono_ns = options_.lockstep ? captured.mono_ns : clock_.mono_ns();
+  ++list_.seq;
+  list_.sensor_seq = frame.sensor_seq();
+  list_.trees = trees_;
+  return {encoder_.encode(list_), captured, list_.publish_mono_ns};
+}
+
+}  // namespace bole

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "detect/detector.h"
+#include "detect/tracker.h"
+#include "publish/encoder.h"
+#include "service/frame_time.h"
+#include "warp/warp_table.h"
+#include "warp/warper.h"
+
+namespace bole {
+
+/// What of the configuration decides what a list holds.
+struct ProcessorOptions {
+  DetectorMode mode = DetectorMode::bole;
+  bool track = true;
+  double min_score = 0.5;  ///< trees below are not published
+  std::string camera;      ///< name in the lists
+  std::uint32_t config_crc = 0;
+  ListSource source = ListSource::replay;
+  bool lockstep = false;  ///< stamp lists with the capture time in place of now
+};
+
+/// One frame in, the bytes of its list out: un-warps, detects, tracks and encodes. Used by one
+/// thread; allocates nothing after the first frames.
+class Processor {
+ public:
+  /// `table` and `clock` must outlive it.
+  Processor(const WarpTable& table, double camera_height, const Search& search,
+            ProcessorOptions options, const Clock& clock);
+
+  struct Result {
+    std::span<const std::byte> bytes;  ///< of the list, until the next call
+    FrameTime captured;
+    std::int64_t publish_mono_ns = 0;
+  };
+  /// Throws BadFrame when the frame cannot be used; it then takes no number in `seq`.
+  Result process(const Frame& frame);
+
+  std::int64_t trees_rejected() const { return encoder_.rejected(); }
+
+ private:
+  void choose(std::span<const Tree> found);
+  void track(std::int64_t captured_ns);
+
+  Warper warper_;
+  std::unique_ptr<Detector> detector_;
+  Tracker tracker_;
+  TreeListEncoder encoder_;
+  const ProcessorOptions options_;
+  const Clock& clock_;
+  TreeList list_;
+  std::vector<Tree> trees_;
+  std::optional<std::int64_t> last_captured_ns_;
+};
+
+}  // namespace bole

@@ -1,0 +1,160 @@
+#include "service/telemetry.h"
+
+#include <algorithm>
+#include <span>
+
+#include <spdlog/spdlog.h>
+
+#include "base/clock.h"
+
+namespace bole {
+namespace {
+
+// A replay names each bad file; a camera with ever new words must not fill the memory.
+constexpr std::size_t kMostTold = 1000;
+
+float ms(std::int64_t ns) { return static_cast<float>(ns) / 1e6F; }
+
+std::int8_t wire_state(CameraState state) {
+  switch (state) {
+    case CameraState::starting:
+      return status_t::STATE_STARTING;
+    case CameraState::opening:
+      return status_t::STATE_OPENING;
+    case CameraState::streaming:
+      return status_t::STATE_STREAMING;
+    case CameraState::stalled:
+      return status_t::STATE_STALLED;
+    case CameraState::no_camera:
+      break;
+  }
+  return status_t::STATE_NO_CAMERA;
+}
+
+// Nearest rank of `count` sorted values.
+std::int64_t quantile(std::span<const std::int64_t> sorted, double q) {
+  if (sorted.empty()) return 0;
+  const auto rank = static_cast<std::size_t>(q * static_cast<double>(sorted.size()));
+  return sorted[std::min(rank, sorted.size() - 1)];
+}
+
+}  // namespace
+
+Telemetry::Telemetry(std::string version, std::string camera)
+    : version_(std::move(version)),
+      camera_(std::move(camera)),
+      start_ns_(SystemClock().mono_ns()),
+      last_status_ns_(start_ns_) {}
+
+void Telemetry::capture_event(const CameraEvent& event) {
+  const bool streaming = event.state == CameraState::streaming;
+  if (!event.repeated) {
+    const auto level = streaming || event.state == CameraState::opening ? spdlog::level::info
+                                                                        : spdlog::level::warn;
+    spdlog::log(level, "camera {}: {}", name(event.state), event.reason);
+  }
+  const std::lock_guard lock(mutex_);
+  event_ = event;
+  if (streaming) {
+    source_ = event.reason;
+  } else if (event.state != CameraState::opening) {
+    last_error_ = event.reason;
+  }
+}
+
+void Telemetry::capture_counts(const CaptureCounts& counts) {
+  const std::lock_guard lock(mutex_);
+  capture_ = counts;
+}
+
+void Telemetry::overwritten() {
+  const std::lock_guard lock(mutex_);
+  ++dropped_.overwritten;
+}
+
+void Telemetry::bad_frame(const std::string& reason) {
+  const std::lock_guard lock(mutex_);
+  note(reason);
+}
+
+void Telemetry::unusable(std::string_view file, const std::string& reason) {
+  const std::lock_guard lock(mutex_);
+  ++dropped_.unusable;
+  note((file.empty() ? "frame" : std::string(file)) + ": " + reason);
+}
+
+void Telemetry::note(const std::string& trouble) {
+  last_error_ = trouble;
+  if (told_.size() < kMostTold && told_.insert(trouble).second) {
+    spdlog::warn("left out {}", trouble);
+  }
+}
+
+void Telemetry::processed(std::int64_t latency_ns, std::int64_t trees_rejected) {
+  const std::lock_guard lock(mutex_);
+  recent_.at(static_cast<std::size_t>(lists_) % kRecent) = latency_ns;
+  ++lists_;
+  latency_.add(latency_ns);
+  trees_rejected_ = trees_rejected;
+}
+
+void Telemetry::vision(bool degraded, const std::string& reason) {
+  const std::lock_guard lock(mutex_);
+  if (degraded != degraded_ && degraded) spdlog::warn("vision degraded: {}", reason);
+  if (degraded != degraded_ && !degraded) spdlog::info("vision restored");
+  degraded_ = degraded;
+  if (degraded_reason_ != reason) degraded_reason_ = reason;
+}
+
+std::vector<counter_t> Telemetry::drops() const {
+  std::vector<counter_t> drops;
+  for (std::size_t cause = 0; cause < kDropCauseNames.size(); ++cause) {
+    drops.push_back({std::string(kDropCauseNames.at(cause)), capture_.drops.by_cause().at(cause)});
+  }
+  drops.push_back({"overwritten", dropped_.overwritten});
+  drops.push_back({"unusable", dropped_.unusable});
+  if (trees_rejected_ > 0) drops.push_back({"trees_not_finite", trees_rejected_});
+  return drops;
+}
+
+status_t Telemetry::status(std::int64_t now_ns, bool stopping) {
+  const std::lock_guard lock(mutex_);
+  status_t status{};
+  status.uptime_ns = now_ns - start_ns_;
+  status.version = version_;
+  status.camera = camera_;
+  status.source = source_;
+  status.state = stopping ? status_t::STATE_STOPPING : wire_state(event_.state);
+  if (event_.state != CameraState::streaming) status.state_reason = event_.reason;
+  status.degraded = degraded_ ? 1 : 0;
+  status.degraded_reason = degraded_reason_;
+  status.frames = capture_.frames;
+  status.lists = lists_;
+  status.drops = drops();
+  status.last_error = last_error_;
+
+  const float seconds =
+      static_cast<float>(std::max<std::int64_t>(now_ns - last_status_ns_, 1)) / 1e9F;
+  status.frame_rate = static_cast<float>(capture_.frames - last_frames_) / seconds;
+  status.list_rate = static_cast<float>(lists_ - last_lists_) / seconds;
+  last_status_ns_ = now_ns;
+  last_frames_ = capture_.frames;
+  last_lists_ = lists_;
+
+  std::array<std::int64_t, kRecent> sorted = recent_;
+  const auto count = std::min(static_cast<std::size_t>(lists_), kRecent);
+  const std::span<std::int64_t> values(sorted.data(), count);
+  std::ranges::sort(values);
+  status.latency_p50_ms = ms(quantile(values, 0.5));
+  status.latency_p99_ms = ms(quantile(values, 0.99));
+  status.latency_max_ms = ms(values.empty() ? 0 : values.back());
+  return status;
+}
+
+Telemetry::Summary Telemetry::summary() const {
+  const std::lock_guard lock(mutex_);
+  return {capture_.frames,         lists_,        drops(), latency_.quantile(0.5),
+          latency_.quantile(0.99), latency_.max()};
+}
+
+}  // namespace bole

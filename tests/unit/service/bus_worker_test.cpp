@@ -1,0 +1,129 @@
+#include "service/bus_worker.h"
+
+#include <condition_variable>
+
+#include <gtest/gtest.h>
+
+#include "base/clock.h"
+
+namespace bole {
+namespace {
+
+// What a bus does is up to the test: it may refuse or hold up messages.
+struct BusScript {
+  std::mutex mutex;
+  std::condition_variable changed;
+  bool held = false;
+  std::string refusal;
+  std::vector<std::size_t> sizes;  // of the messages that arrived
+
+  void hold(bool now) {
+    const std::lock_guard lock(mutex);
+    held = now;
+    changed.notify_all();
+  }
+  void refuse(const std::string& reason) {
+    const std::lock_guard lock(mutex);
+    refusal = reason;
+  }
+  void wait_for_messages(std::size_t count) {
+    std::unique_lock lock(mutex);
+    changed.wait(lock, [&] { return sizes.size() >= count; });
+  }
+};
+
+class ScriptedBus : public Publisher {
+ public:
+  explicit ScriptedBus(BusScript& script) : script_(script) {}
+  std::string name() const override { return "scripted"; }
+  void publish(MessageKind /*kind*/, std::span<const std::byte> bytes,
+               const std::string& /*file*/) override {
+    std::unique_lock lock(script_.mutex);
+    script_.sizes.push_back(bytes.size());
+    script_.changed.notify_all();
+    script_.changed.wait(lock, [&] { return !script_.held; });
+    if (!script_.refusal.empty()) throw BusError(script_.refusal);
+  }
+
+ private:
+  BusScript& script_;
+};
+
+void offer(BusWorker& bus, std::size_t size, MessageKind kind = MessageKind::trees) {
+  bus.offer(kind, std::vector<std::byte>(size), "", SystemClock().mono_ns());
+}
+
+std::unique_ptr<BusWorker> worker(BusScript& script, WhenFull when_full) {
+  return std::make_unique<BusWorker>(std::make_unique<ScriptedBus>(script), when_full, [] {});
+}
+
+TEST(BusWorker, ASlowBusGetsTheNewestListAndTheOthersAreCounted) {
+  BusScript script;
+  script.hold(true);
+  const auto bus = worker(script, WhenFull::overwrite);
+  offer(*bus, 1);
+  script.wait_for_messages(1);  // held in the bus; the slot is free
+  for (std::size_t size = 2; size <= 5; ++size) offer(*bus, size);
+  script.hold(false);
+  script.wait_for_messages(2);
+  bus->close();
+  while (!bus->finished()) std::this_thread::yield();
+  EXPECT_EQ(script.sizes, (std::vector<std::size_t>{1, 5}));
+  EXPECT_EQ(bus->health().overwritten, 3);
+  EXPECT_EQ(bus->health().published, 2);
+}
+
+TEST(BusWorker, InLockstepNothingIsLost) {
+  BusScript script;
+  const auto bus = worker(script, WhenFull::wait);
+  for (std::size_t size = 0; size < 500; ++size) offer(*bus, size);
+  bus->close();
+  while (!bus->finished()) std::this_thread::yield();
+  EXPECT_EQ(script.sizes.size(), 500U);
+  EXPECT_EQ(bus->health().published, 500);
+}
+
+TEST(BusWorker, AStatusDoesNotTakeAListsPlace) {
+  BusScript script;
+  script.hold(true);
+  const auto bus = worker(script, WhenFull::overwrite);
+  offer(*bus, 1);
+  script.wait_for_messages(1);
+  offer(*bus, 2);
+  offer(*bus, 3, MessageKind::status);
+  script.hold(false);
+  script.wait_for_messages(3);
+  EXPECT_EQ(script.sizes, (std::vector<std::size_t>{1, 3, 2}));
+  EXPECT_EQ(bus->health().overwritten, 0);
+}
+
+TEST(BusWorker, ARefusalIsAStateAndACounterAndEndsWithTheNextSuccess) {
+  BusScript script;
+  script.refuse("no route");
+  const auto bus = worker(script, WhenFull::wait);
+  for (int k = 0; k < 3; ++k) offer(*bus, 1);
+  script.wait_for_messages(3);
+  while (bus->health().failed < 3) std::this_thread::yield();
+  EXPECT_EQ(bus->health().healthy, 0);
+  EXPECT_EQ(bus->health().last_error, "no route");
+  script.refuse("");
+  offer(*bus, 1);
+  while (bus->health().published < 1) std::this_thread::yield();
+  EXPECT_EQ(bus->health().healthy, 1);
+  EXPECT_EQ(bus->health().failed, 3);
+}
+
+TEST(BusWorker, HandOversAreBinnedByPowersOfTwoMicroseconds) {
+  BusScript script;
+  const auto bus = worker(script, WhenFull::wait);
+  bus->offer(MessageKind::trees, {}, "", SystemClock().mono_ns() - 1'000'000'000);
+  bus->offer(MessageKind::trees, {}, "",
+             SystemClock().mono_ns() + 1'000'000'000);  // a stepped clock
+  while (bus->health().published < 2) std::this_thread::yield();
+  EXPECT_EQ(bus->health().handover_histogram[bus_t::HANDOVER_BINS - 1], 1);
+  EXPECT_EQ(bus->health().handover_histogram[0], 1);
+  EXPECT_GE(bus->health().handover_max_us, 1e6F);
+}
+
+}  // namespace
+}  // namespace bole

@@ -1,0 +1,89 @@
+#include "service/daemon_config.h"
+
+#include <gmock/gmock.h>
+
+#include "base/errors.h"
+#include "base/files.h"
+
+namespace bole {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+DaemonConfig with(const std::vector<std::string>& pairs) {
+  std::vector<Setting> settings;
+  for (const std::string& pair : pairs) settings.push_back(parse_setting(pair));
+  return load_daemon_config(std::nullopt, settings);
+}
+
+TEST(DaemonConfig, WithoutAFileTheDefaultsHold) {
+  const DaemonConfig config = with({});
+  EXPECT_EQ(config.publish.min_score, 0.5);
+  EXPECT_EQ(config.lcm.text(), kDefaultLcmUrl);
+  EXPECT_EQ(config.detect.mode, DetectorMode::bole);
+  ASSERT_EQ(config.publish.to.size(), 1U);
+  EXPECT_EQ(config.publish.to[0].bus, PublishTarget::Bus::lcm);
+}
+
+TEST(DaemonConfig, SettingsAreTomlAndABareWordIsAString) {
+  const DaemonConfig config =
+      with({"publish.min_score=0.25", "detect.mode=paper", "camera.name=\"front\"",
+            "publish.to=[\"jsonl:-\", \"lcm\"]", "source.uri=replay:/a=b", "source.loop=true"});
+  EXPECT_EQ(config.publish.min_score, 0.25);
+  EXPECT_EQ(config.detect.mode, DetectorMode::paper);
+  EXPECT_EQ(config.camera.name, "front");
+  EXPECT_EQ(config.publish.to.size(), 2U);
+  EXPECT_EQ(config.publish.to[0].path, "-");
+  EXPECT_EQ(config.source.uri, "replay:/a=b");
+  EXPECT_TRUE(config.source.loop);
+}
+
+TEST(DaemonConfig, TheLaterSettingWins) {
+  EXPECT_EQ(with({"publish.min_score=0.1", "publish.min_score=0.2"}).publish.min_score, 0.2);
+}
+
+TEST(DaemonConfig, SettingsLieOverTheFile) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "boled.toml";
+  const std::string text = "[publish]\nmin_score = 0.7\nrobot = \"elk\"\n";
+  write_file_atomically(path, std::as_bytes(std::span(text)));
+  const DaemonConfig config = load_daemon_config(path, {{"publish.min_score", "0.9"}});
+  EXPECT_EQ(config.publish.min_score, 0.9);
+  EXPECT_EQ(config.publish.robot, "elk");
+}
+
+TEST(DaemonConfig, TheCameraIsNamedAfterItsFolder) {
+  EXPECT_EQ(with({"camera.file=/etc/bole/left eye/camera.toml"}).camera.name, "left_eye");
+  EXPECT_EQ(with({"camera.file=/a/abcdefghijklmnopqrstuvwxyz/c.toml"}).camera.name.size(), 16U);
+}
+
+TEST(DaemonConfig, RefusesWhatIsNotAsItMustBeAndNamesIt) {
+  for (const char* pair :
+       {"publish.min_score=1.5", "publish.min_score=nan", "publish.min_scor=0.5", "detec.mode=bole",
+        "detect.mode=best", "publish.to=lcm", "publish.to=[\"udp\"]", "publish.to=[\"jsonl:\"]",
+        "camera.name=\"\"", "camera.name=abcdefghijklmnopq", "publish.robot=\"a/b\"",
+        "source.loop=1", "source.rate_hz=0", "lcm.url=tcp", "service.realtime_priority=100",
+        "publish.min_score.x=1", "camera.file=["}) {
+    const std::string text = pair;
+    const std::string part = text.substr(0, text.find_first_of(".="));
+    EXPECT_THAT([&] { with({text}); }, ThrowsMessage<ConfigError>(HasSubstr(part))) << text;
+  }
+}
+
+TEST(DaemonConfig, ASettingWithoutKeyOrValueSignIsRefused) {
+  EXPECT_THROW(parse_setting("publish.min_score"), ConfigError);
+  EXPECT_THROW(parse_setting("=1"), ConfigError);
+  EXPECT_THROW(with({"publish..min_score=1"}), ConfigError);
+}
+
+TEST(DaemonConfig, TheCrcTellsDaemonsApartThatMakeOtherLists) {
+  const std::uint32_t crc = config_crc(with({}), 1);
+  EXPECT_EQ(config_crc(with({"publish.to=[\"jsonl:-\"]"}), 1), crc);
+  EXPECT_NE(config_crc(with({}), 2), crc);
+  EXPECT_NE(config_crc(with({"detect.mode=paper"}), 1), crc);
+  EXPECT_NE(config_crc(with({"publish.min_score=0.51"}), 1), crc);
+}
+
+}  // namespace
+}  // namespace bole

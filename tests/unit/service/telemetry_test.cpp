@@ -1,0 +1,77 @@
+#include "service/telemetry.h"
+
+#include <gtest/gtest.h>
+
+#include "base/clock.h"
+
+namespace bole {
+namespace {
+
+std::int64_t count_of(const std::vector<counter_t>& drops, const std::string& name) {
+  for (const counter_t& drop : drops) {
+    if (drop.name == name) return drop.count;
+  }
+  return -1;
+}
+
+TEST(Telemetry, APlannerCanTellNoCameraFromStreaming) {
+  Telemetry telemetry("1.0", "front");
+  EXPECT_EQ(telemetry.status(0, false).state, status_t::STATE_STARTING);
+  telemetry.capture_event({CameraState::streaming, "cam 640x480", false});
+  status_t status = telemetry.status(0, false);
+  EXPECT_EQ(status.state, status_t::STATE_STREAMING);
+  EXPECT_EQ(status.source, "cam 640x480");
+  EXPECT_EQ(status.state_reason, "");
+  telemetry.capture_event({CameraState::no_camera, "unplugged", false});
+  status = telemetry.status(0, false);
+  EXPECT_EQ(status.state, status_t::STATE_NO_CAMERA);
+  EXPECT_EQ(status.state_reason, "unplugged");
+  EXPECT_EQ(status.last_error, "unplugged");
+  EXPECT_EQ(status.source, "cam 640x480");
+}
+
+TEST(Telemetry, DropsAreToldByCause) {
+  Telemetry telemetry("1.0", "front");
+  CaptureCounts counts;
+  counts.frames = 10;
+  counts.drops[DropCause::superseded] = 2;
+  counts.drops[DropCause::missing] = 3;
+  telemetry.capture_counts(counts);
+  telemetry.overwritten();
+  telemetry.unusable("x.png", "is cut short");
+  const status_t status = telemetry.status(0, false);
+  EXPECT_EQ(status.frames, 10);
+  EXPECT_EQ(count_of(status.drops, "superseded"), 2);
+  EXPECT_EQ(count_of(status.drops, "missing"), 3);
+  EXPECT_EQ(count_of(status.drops, "overwritten"), 1);
+  EXPECT_EQ(count_of(status.drops, "unusable"), 1);
+  EXPECT_EQ(status.last_error, "x.png: is cut short");
+}
+
+TEST(Telemetry, RatesAreOverTheTimeSinceTheLastStatus) {
+  Telemetry telemetry("1.0", "front");
+  const std::int64_t now_ns = SystemClock().mono_ns();
+  telemetry.status(now_ns, false);
+  CaptureCounts counts;
+  counts.frames = 20;
+  telemetry.capture_counts(counts);
+  for (int k = 0; k < 10; ++k) telemetry.processed(1'000'000, 0);
+  const status_t status = telemetry.status(now_ns + 2'000'000'000, false);
+  EXPECT_FLOAT_EQ(status.frame_rate, 10);
+  EXPECT_FLOAT_EQ(status.list_rate, 5);
+  EXPECT_FLOAT_EQ(telemetry.status(now_ns + 3'000'000'000, false).list_rate, 0);
+}
+
+TEST(Telemetry, LatencyIsThatOfTheLastLists) {
+  Telemetry telemetry("1.0", "front");
+  for (int k = 0; k < 1000; ++k) telemetry.processed(90'000'000, 0);
+  for (int k = 0; k < 512; ++k) telemetry.processed(k * 10'000, 0);
+  const status_t status = telemetry.status(0, false);
+  EXPECT_NEAR(status.latency_p50_ms, 2.56F, 0.02F);
+  EXPECT_NEAR(status.latency_p99_ms, 5.07F, 0.02F);
+  EXPECT_FLOAT_EQ(status.latency_max_ms, 5.11F);
+  EXPECT_NEAR(static_cast<double>(telemetry.summary().latency_max_ns), 9e7, 1);
+}
+
+}  // namespace
+}  // namespace bole
