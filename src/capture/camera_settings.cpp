@@ -25,10 +25,10 @@ std::optional<PixelFormat> read_format(TomlTable& table) {
 
 }  // namespace
 
-CameraSettings read_camera_settings(TomlTable table) {
+CameraSettings read_camera_settings(TomlTable& table) {
   CameraSettings settings;
   settings.format = read_format(table);
-  settings.rate_hz = table.number("rate_hz", 0, {0, 1000});
+  settings.frame_rate = table.number("frame_rate", 0, {0, 1000});
   settings.buffers = table.integer("buffers", settings.buffers, {3, 32});
   settings.exposure = enumerated<CameraSettings::Exposure>(
       table, "exposure", {"unchanged", "automatic", "fixed", "metered"});
@@ -40,7 +40,6 @@ CameraSettings read_camera_settings(TomlTable table) {
       table.integer("white_balance_k", settings.white_balance_k, {1'000, 20'000});
   settings.power_line = enumerated<CameraSettings::PowerLine>(
       table, "power_line", {"unchanged", "off", "50 Hz", "60 Hz", "automatic"});
-  table.done();
   return settings;
 }
 

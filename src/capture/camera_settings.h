@@ -20,7 +20,7 @@ struct CameraSettings {
 
   std::optional<PixelFormat> format;  ///< none: the cheapest one for us that the camera has
   ImageSize size;                     ///< what the calibration holds for
-  double rate_hz = 0;                 ///< 0: as the camera has it
+  double frame_rate = 0;              ///< frames a second; 0: as the camera has it
   int buffers = 4;
   Exposure exposure = Exposure::unchanged;
   int exposure_us = 10'000;
@@ -30,8 +30,8 @@ struct CameraSettings {
   PowerLine power_line = PowerLine::unchanged;
 };
 
-/// Reads the table [camera_settings] of boled.toml; `size` is left for the calibration to fill in.
-/// Throws ConfigError.
-CameraSettings read_camera_settings(TomlTable table);
+/// Reads these keys of boled.toml's table [source], beside which others may stand; `size` is left
+/// for the calibration to fill in. Throws ConfigError.
+CameraSettings read_camera_settings(TomlTable& table);
 
 }  // namespace bole

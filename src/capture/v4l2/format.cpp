@@ -119,7 +119,7 @@ std::optional<V4l2Format> try_format(const V4l2Device& device, v4l2_buf_type typ
               (whole_frames ? "" : " in single fields");
     return std::nullopt;
   }
-  format.period = negotiate_rate(device, type, settings.rate_hz);
+  format.period = negotiate_rate(device, type, settings.frame_rate);
   return format;
 }
 
@@ -181,7 +181,7 @@ V4l2Format negotiate_format(const V4l2Device& device, const CameraSettings& sett
   for (const std::uint32_t fourcc : candidates(device, type, settings.format)) {
     last = try_format(device, type, fourcc, settings, offered);
     if (last && (!best || last->period < best->period)) best = last;
-    if (last && reaches(*last, settings.rate_hz)) return *last;
+    if (last && reaches(*last, settings.frame_rate)) return *last;
   }
   if (!best) {
     throw CaptureError("gives no " + shown(settings.size) +

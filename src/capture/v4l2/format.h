@@ -29,7 +29,7 @@ struct V4l2Format {
 };
 
 /// Agrees with the driver on format, size and rate, and tells what it made of it. Of several
-/// formats the one with the least work for us that reaches settings.rate_hz, else the fastest.
+/// formats the one with the least work for us that reaches settings.frame_rate, else the fastest.
 /// Throws CaptureError when there is none of settings.size.
 V4l2Format negotiate_format(const V4l2Device& device, const CameraSettings& settings);
 
