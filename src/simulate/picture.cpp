@@ -9,38 +9,10 @@ namespace {
 
 using Direction = PixelRays::Direction;
 
-Direction operator-(const Direction& a, const Direction& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-
-// How the direction changes from a pixel to the next, from whichever neighbours are seen.
-struct Steps {
-  Direction right, down;
-  float pixel;  // radians
-};
-
-Steps steps_at(const PixelRays& rays, int row, int column) {
-  const Direction& here = rays.at(row, column);
-  const auto step = [&](int dr, int dc) {
-    for (const int sign : {1, -1}) {
-      const int r = row + sign * dr, c = column + sign * dc;
-      if (r < 0 || c < 0 || r >= rays.size().height || c >= rays.size().width) continue;
-      if (!rays.at(r, c).seen()) continue;
-      const Direction d = rays.at(r, c) - here;
-      const auto k = static_cast<float>(sign);
-      return Direction{k * d.x, k * d.y, k * d.z};
-    }
-    return Direction{};
-  };
-  const Direction right = step(0, 1), down = step(1, 0);
-  const float across = right.x * right.x + right.y * right.y + right.z * right.z;
-  const float along = down.x * down.x + down.y * down.y + down.z * down.z;
-  return {right, down, std::max(1e-4F, std::sqrt(std::sqrt(across * along)))};
-}
-
-// Eight places in a pixel, no two in one row or column of eighths.
+// Eight places in a pixel, in sixteenths, no two in one row or column of eighths; nor are the first
+// four in one of quarters.
 constexpr std::array<std::array<float, 2>, 8> kPlaces = {
-    {{-7, -3}, {-5, 5}, {-3, -7}, {-1, 1}, {1, -1}, {3, 7}, {5, -5}, {7, 3}}};
+    {{-7, -3}, {-3, 5}, {1, -5}, {5, 3}, {-5, 7}, {-1, -1}, {3, 1}, {7, -7}}};
 
 class Drawing {
  public:
@@ -56,8 +28,7 @@ class Drawing {
       for (int column = 0; column < size_.width; ++column) {
         const Direction& d = rays_.at(row, column);
         if (!d.seen()) continue;
-        const Sight sight =
-            view_.trace(caster_.ray(d.x, d.y, d.z, steps_at(rays_, row, column).pixel));
+        const Sight sight = view_.trace(caster_.ray(d.x, d.y, d.z, d.span));
         colours_[index(row, column)] = sight.colour;
         surfaces_[index(row, column)] = sight.surface;
       }
@@ -152,17 +123,33 @@ class Drawing {
 
   Colour averaged(int row, int column) const {
     const Direction& d = rays_.at(row, column);
-    const Steps s = steps_at(rays_, row, column);
+    const Direction right = rays_.step_right(row, column), down = rays_.step_down(row, column);
+    // Edges of trunks are measured to a fraction of a pixel; leaves and distant stems are not.
+    const std::size_t places =
+        beside_near_column(row, column) ? kPlaces.size() : kPlaces.size() / 2;
     Colour sum;
-    for (const auto& place : kPlaces) {
-      const float u = place[0] / 16, v = place[1] / 16;
-      sum = sum + view_
-                      .trace(caster_.ray(d.x + u * s.right.x + v * s.down.x,
-                                         d.y + u * s.right.y + v * s.down.y,
-                                         d.z + u * s.right.z + v * s.down.z, s.pixel))
-                      .colour;
+    for (std::size_t i = 0; i < places; ++i) {
+      const float u = kPlaces.at(i)[0] / 16, v = kPlaces.at(i)[1] / 16;
+      sum = sum +
+            view_
+                .trace(caster_.ray(d.x + u * right.x + v * down.x, d.y + u * right.y + v * down.y,
+                                   d.z + u * right.z + v * down.z, d.span))
+                .colour;
     }
-    return sum * (1.0F / kPlaces.size());
+    return sum * (1 / static_cast<float>(places));
+  }
+
+  bool beside_near_column(int row, int column) const {
+    const auto near = [&](int r, int c) {
+      r = std::clamp(r, 0, size_.height - 1);
+      c = std::clamp(c, 0, size_.width - 1);
+      const int surface = surfaces_[index(r, c)];
+      if (surface < kFirstColumn) return false;
+      const Column& stem = view_.column(surface - kFirstColumn);
+      return stem.x * stem.x + stem.y * stem.y < 15 * 15;
+    };
+    return near(row, column) || near(row - 1, column) || near(row + 1, column) ||
+           near(row, column - 1) || near(row, column + 1);
   }
 
   void filter(std::size_t first, int step, int count, float side) {
@@ -206,6 +193,7 @@ class Drawing {
 }  // namespace
 
 PixelRays::PixelRays(const Camera& camera) : size_(camera.model->image_size()) {
+  constexpr float kLooksSomewhere = 1;  // until the spans are known
   directions_.resize(static_cast<std::size_t>(size_.width) * size_.height);
   for (int row = 0; row < size_.height; ++row) {
     for (int column = 0; column < size_.width; ++column) {
@@ -218,9 +206,33 @@ PixelRays::PixelRays(const Camera& camera) : size_(camera.model->image_size()) {
         if (!back || std::hypot(back->row - pixel.row, back->column - pixel.column) > 0.5) continue;
       }
       const Vec3 d = normalized(camera.robot_from_camera * ray);
-      directions_[i] = {static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)};
+      directions_[i] = {static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z),
+                        kLooksSomewhere};
     }
   }
+  for (int row = 0; row < size_.height; ++row) {
+    for (int column = 0; column < size_.width; ++column) {
+      Direction& d = directions_[static_cast<std::size_t>(row) * size_.width + column];
+      if (!d.seen()) continue;
+      const Direction a = step_right(row, column), b = step_down(row, column);
+      const float across = a.x * a.x + a.y * a.y + a.z * a.z;
+      const float along = b.x * b.x + b.y * b.y + b.z * b.z;
+      d.span = std::max(1e-4F, std::sqrt(std::sqrt(across * along)));
+    }
+  }
+}
+
+// From whichever neighbour is seen.
+PixelRays::Direction PixelRays::step(int row, int column, int down, int right) const {
+  const Direction& here = at(row, column);
+  for (const int sign : {1, -1}) {
+    const int r = row + sign * down, c = column + sign * right;
+    if (r < 0 || c < 0 || r >= size_.height || c >= size_.width || !at(r, c).seen()) continue;
+    const Direction& there = at(r, c);
+    const auto k = static_cast<float>(sign);
+    return {k * (there.x - here.x), k * (there.y - here.y), k * (there.z - here.z), 0};
+  }
+  return {};
 }
 
 RayCaster::RayCaster(const Pose& pose)

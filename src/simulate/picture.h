@@ -22,15 +22,21 @@ class PixelRays {
   explicit PixelRays(const Camera& camera);
 
   struct Direction {
-    float x = 0, y = 0, z = 0;  ///< unit; all zero where the camera sees nothing or never looks
-    bool seen() const { return x != 0 || y != 0 || z != 0; }
+    float x = 0, y = 0, z = 0;  ///< unit
+    float span = 0;  ///< radians that the pixel spans; 0: the camera sees nothing or never looks
+    bool seen() const { return span > 0; }
   };
   ImageSize size() const { return size_; }
   const Direction& at(int row, int column) const {
     return directions_[static_cast<std::size_t>(row) * size_.width + column];
   }
+  /// How the direction changes from a pixel to the one on its right, and below it.
+  Direction step_right(int row, int column) const { return step(row, column, 0, 1); }
+  Direction step_down(int row, int column) const { return step(row, column, 1, 0); }
 
  private:
+  Direction step(int row, int column, int down, int right) const;
+
   ImageSize size_;
   std::vector<Direction> directions_;
 };

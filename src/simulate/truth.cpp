@@ -36,7 +36,7 @@ struct Share {
   double value() const { return imaged < 0.25F * all || imaged == 0 ? 0 : shown / imaged; }
 };
 
-constexpr int kAcross = 8, kUp = 24;
+constexpr int kAcross = 6, kUp = 20;
 
 // One height of the silhouette, from edge to edge.
 void sample_row(const View& view, int column, float h, const ImageTest& image, Share& share) {
