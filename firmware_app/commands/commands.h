@@ -8,5 +8,6 @@ namespace bole {
 // throws: ConfigError for exit code 2, any other exception for 1.
 
 void add_listen(CLI::App& app);
+void add_sim(CLI::App& app);
 
 }  // namespace bole

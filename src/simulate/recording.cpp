@@ -81,12 +81,11 @@ class Encoder {
 };
 
 void copy_camera(const std::filesystem::path& folder, const Camera& camera) {
-  write_text(folder / "camera.toml", camera.config_text);
+  constexpr std::size_t kLargest = 1U << 26;
   const auto from = camera.file.parent_path();
+  write_text(folder / "camera.toml", camera.config_text);
   for (const std::string& name : {camera.config.calibration, camera.config.mask}) {
-    if (name.empty()) continue;
-    constexpr std::size_t kLargest = 1U << 26;
-    write_file_atomically(folder / name, read_file(from / name, kLargest));
+    if (!name.empty()) write_file_atomically(folder / name, read_file(from / name, kLargest));
   }
 }
 
@@ -125,11 +124,14 @@ void record(const std::filesystem::path& folder, const Camera& camera,
   const Encoder encoder(options.format, camera.model->image_size());
   copy_camera(folder, camera);
   Simulator simulator(options.world, options.seed, camera, options.frames);
+  std::optional<Impairer> impairer;
+  if (options.impairment) impairer.emplace(*options.impairment, options.seed);
   std::vector<FrameTruth> truths;
   std::string stamps;
   for (int k = 0; k < options.frames; ++k) {
     SimFrame frame = simulator.frame(k);
     frame.truth.file = frame_name(k, options.format);
+    if (impairer) frame.picture = impairer->apply(frame.picture);
     write_file_atomically(folder / frame.truth.file, encoder.encode(frame.picture));
     stamps += frame.truth.file + "," + std::to_string(frame.truth.utime) + "\n";
     truths.push_back(std::move(frame.truth));

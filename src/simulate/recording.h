@@ -2,8 +2,10 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
+#include "simulate/impairment.h"
 #include "simulate/simulator.h"
 
 namespace bole::simulate {
@@ -14,6 +16,7 @@ struct RecordingOptions {
   std::uint64_t seed = 1;
   std::string format = "jpg";  ///< png, jpg, or a raw pixel format's name (base/image.h)
   SimOptions world;
+  std::optional<Impairment> impairment;
 };
 
 /// Renders a drive into `folder`, ready to be replayed: frame_000000.FORMAT and on, timestamps.csv,

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "geometry/angles.h"
+#include "simulate/image_files.h"
 
 namespace bole::simulate {
 
@@ -58,6 +59,9 @@ SimFrame Simulator::frame(int k) {
   SimFrame result;
   result.picture = draw(view, world_.look, rays_, pose,
                         world_.seed + scramble(static_cast<std::uint32_t>(k)), &result.surfaces);
+  if (const int quality = world_.look.jpeg_quality; quality < 100) {
+    result.picture = through_jpeg(result.picture, quality);
+  }
   FrameTruth& truth = result.truth;
   truth.utime = static_cast<std::int64_t>(std::llround(k * kFramePeriod * 1e6));
   truth.world = world_number_;

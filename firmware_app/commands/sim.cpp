@@ -1,0 +1,70 @@
+#include <unistd.h>
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "base/errors.h"
+#include "commands/commands.h"
+#include "simulate/invented_camera.h"
+#include "simulate/recording.h"
+
+namespace bole {
+namespace {
+
+struct SimCommand {
+  std::string out;
+  std::string camera = "calib/example/camera.toml";
+  std::string preset = "drive";
+  std::string impairment;
+  simulate::RecordingOptions recording;
+};
+
+// On a terminal only, and only where a person has to wait.
+void show_progress(int done, int all) {
+  if (::isatty(STDERR_FILENO) == 0 || all < 10) return;
+  std::fprintf(stderr, "\rframe %d of %d%s", done, all, done == all ? "\n" : "");
+}
+
+void simulate_drive(SimCommand command) {
+  command.recording.world = simulate::preset(command.preset);
+  if (!command.impairment.empty()) {
+    command.recording.impairment = simulate::impairment_from_name(command.impairment);
+    if (!command.recording.impairment) {
+      throw ConfigError("--impair", "", "\"" + command.impairment + "\" is not known",
+                        "must be one of: darkness, glare, covered, smeared, frozen");
+    }
+  }
+  const Camera camera = command.camera == "invented"
+                            ? simulate::invent_camera(command.out, command.recording.seed)
+                            : load_camera(command.camera);
+  simulate::record(command.out, camera, command.recording,
+                   [&](int done) { show_progress(done, command.recording.frames); });
+}
+
+}  // namespace
+
+void add_sim(CLI::App& app) {
+  auto options = std::make_shared<SimCommand>();
+  CLI::App* command = app.add_subcommand(
+      "sim", "Renders a robot's drive through a wood, with the truth, ready to be replayed");
+  command->add_option("--out", options->out, "Folder to write")->required();
+  command->add_option("--frames", options->recording.frames, "Frames, ten a second")
+      ->required()
+      ->check(CLI::Range(1, 100000));
+  command->add_option("--seed", options->recording.seed, "All that is random follows from it")
+      ->required();
+  command
+      ->add_option("--camera", options->camera,
+                   "camera.toml to see through, or \"invented\" for one that follows from the seed")
+      ->capture_default_str();
+  command->add_option("--format", options->recording.format, "png, jpg or a raw pixel format")
+      ->capture_default_str();
+  command->add_option("--preset", options->preset, "drive, varied or treeless")
+      ->capture_default_str();
+  command->add_option("--impair", options->impairment,
+                      "darkness, glare, covered, smeared or frozen, from the first frame on");
+  command->callback([options] { simulate_drive(*options); });
+}
+
+}  // namespace bole
