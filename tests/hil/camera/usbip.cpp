@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -41,7 +42,7 @@ std::span<uint8_t> bytes_of(Header& header) {
 
 void write_attribute(const char* name, const std::string& value) {
   const std::string path = std::string("/sys/devices/platform/vhci_hcd.0/") + name;
-  const UniqueFd file(open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  const bole::UniqueFd file(open(path.c_str(), O_WRONLY | O_CLOEXEC));
   if (!file || write(file.get(), value.data(), value.size()) < 0) {
     throw std::system_error(errno, std::generic_category(), path);
   }
@@ -49,13 +50,13 @@ void write_attribute(const char* name, const std::string& value) {
 
 // Hands the kernel one end of a socketpair as the device in `port`, returns the other. The kernel
 // holds its own reference, so the descriptor of its end is closed here.
-UniqueFd attach(unsigned port) {
+bole::UniqueFd attach(unsigned port) {
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
     throw std::system_error(errno, std::generic_category(), "socketpair");
   }
-  UniqueFd ours(ends[0]);
-  const UniqueFd kernels(ends[1]);
+  bole::UniqueFd ours(ends[0]);
+  const bole::UniqueFd kernels(ends[1]);
   // Room for a whole frame's worth of payloads: fewer wake-ups, which is what emulation is slow at.
   const int buffer_size = 1 << 20;
   for (int end : ends) {

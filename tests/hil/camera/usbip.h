@@ -9,8 +9,8 @@
 #include <span>
 #include <variant>
 
+#include "base/files.h"
 #include "byte_writer.h"
-#include "unique_fd.h"
 
 namespace hil {
 
@@ -36,7 +36,7 @@ using UsbipCommand = std::variant<Submit, Unlink>;
 /// outside of this class.
 class UsbipLink {
  public:
-  explicit UsbipLink(UniqueFd socket) : socket_(std::move(socket)) {}
+  explicit UsbipLink(bole::UniqueFd socket) : socket_(std::move(socket)) {}
 
   /// The next command, or nothing once the kernel or `shut_down` has ended the connection.
   std::optional<UsbipCommand> receive();
@@ -55,7 +55,7 @@ class UsbipLink {
   bool send_all(std::span<const uint8_t> bytes);
   bool receive_all(std::span<uint8_t> bytes);
 
-  UniqueFd socket_;
+  bole::UniqueFd socket_;
 };
 
 /// One port of vhci_hcd.0 with a device in it.

@@ -1,18 +1,9 @@
 #include "video_modes.h"
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
-#include <optional>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
-
-#include "unique_fd.h"
 
 namespace hil {
 namespace {
@@ -78,34 +69,16 @@ std::vector<std::span<const uint8_t>> split_jpegs(std::span<const uint8_t> bytes
 
 FrameSize load_frames(const PixelFormat& format, unsigned width, unsigned height,
                       const std::string& path) {
-  FileMapping file(path);
-  auto frames = format.is_jpeg()
-                    ? split_jpegs(file.bytes())
-                    : split_raw(file.bytes(), size_t{width} * height * format.bits_per_pixel / 8);
+  bole::MappedFile file(path);
+  const std::span bytes(reinterpret_cast<const uint8_t*>(file.bytes().data()), file.bytes().size());
+  const size_t raw_size = size_t{width} * height * format.bits_per_pixel / 8;
+  auto frames = format.is_jpeg() ? split_jpegs(bytes) : split_raw(bytes, raw_size);
   if (frames.empty()) throw std::runtime_error(path + ": holds no whole frame");
   const auto largest = std::ranges::max(frames, {}, &std::span<const uint8_t>::size);
   return {width, height, static_cast<uint32_t>(largest.size()), std::move(file), std::move(frames)};
 }
 
 }  // namespace
-
-FileMapping::FileMapping(const std::string& path) {
-  const UniqueFd file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  struct stat status {};
-  if (!file || fstat(file.get(), &status) != 0) {
-    throw std::system_error(errno, std::generic_category(), path);
-  }
-  const auto size = static_cast<size_t>(status.st_size);
-  void* start = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.get(), 0);
-  if (start == MAP_FAILED) throw std::system_error(errno, std::generic_category(), path);
-  bytes_ = {static_cast<const uint8_t*>(start), size};
-}
-
-FileMapping::FileMapping(FileMapping&& other) noexcept : bytes_(std::exchange(other.bytes_, {})) {}
-
-FileMapping::~FileMapping() {
-  if (!bytes_.empty()) munmap(const_cast<uint8_t*>(bytes_.data()), bytes_.size());
-}
 
 std::vector<VideoFormat> load_video_modes(std::span<const std::string> arguments) {
   std::vector<VideoFormat> formats;

@@ -8,22 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "base/files.h"
+
 namespace hil {
-
-/// A file mapped read-only for as long as this lives.
-class FileMapping {
- public:
-  explicit FileMapping(const std::string& path);  // throws std::system_error
-  ~FileMapping();
-  FileMapping(FileMapping&& other) noexcept;
-  FileMapping(const FileMapping&) = delete;
-  FileMapping& operator=(const FileMapping&) = delete;
-
-  std::span<const uint8_t> bytes() const { return bytes_; }
-
- private:
-  std::span<const uint8_t> bytes_;
-};
 
 /// How one V4L2 pixel format looks on USB (UVC 1.1 payload specifications).
 struct PixelFormat {
@@ -38,7 +25,7 @@ struct FrameSize {
   unsigned width;
   unsigned height;
   uint32_t max_bytes;  // of the largest frame
-  FileMapping file;
+  bole::MappedFile file;
   std::vector<std::span<const uint8_t>> frames;  // views into `file`
 };
 

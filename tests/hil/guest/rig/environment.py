@@ -20,6 +20,11 @@ def build(*parts):
     return pathlib.Path(os.environ["HIL_BUILD"], *parts)
 
 
+def is_smoke():
+    """Whether scenarios shall do the smaller part of what they can."""
+    return os.environ["HIL_SELECTION"] == "smoke"
+
+
 def prepare():
     """What every scenario needs, done once."""
     subprocess.run(["modprobe", "-a", "vhci-hcd", "uvcvideo"], check=True)

@@ -5,6 +5,7 @@ import pathlib
 import random
 
 from rig import environment
+from rig.wait import Skip
 
 # Bits per pixel of the formats that the rig's cameras have; MJPG has none.
 BITS_PER_PIXEL = {
@@ -13,6 +14,13 @@ BITS_PER_PIXEL = {
 }
 USB_FORMATS = ("YUYV", "UYVY", "NV12", "GREY", "BA81", "GBRG", "GRBG", "RGGB", "BGR3", "MJPG")
 SIZES = ((640, 480), (1280, 720))
+
+# The project's names of the same formats; they are also the endings of its raw frames.
+PROJECT_NAMES = {
+    "YUYV": "yuyv", "UYVY": "uyvy", "NV12": "nv12", "NM12": "nv12", "GREY": "grey", "BA81": "bggr",
+    "GBRG": "gbrg", "GRBG": "grbg", "RGGB": "rggb", "BGR3": "bgr24", "RGB3": "rgb24",
+    "MJPG": "mjpeg",
+}
 
 END_OF_JPEG = b"\xff\xd9"
 
@@ -38,6 +46,27 @@ class Mode:
 
     def frames(self):
         return self.split(self.path.read_bytes())
+
+
+def rendered(fourcc, size, count=None):
+    """A mode with the first `count` pictures of a drive through a wood (host/frames); all if None."""
+    width, height = size
+    mode = Mode(fourcc, width, height,
+                environment.SCRATCH / f"rendered_{fourcc}_{width}x{height}_{count or 'all'}")
+    if not mode.path.exists():
+        files = rendered_files(fourcc, size)[:count]
+        mode.path.write_bytes(b"".join(file.read_bytes() for file in files))
+    return mode
+
+
+def rendered_files(fourcc, size):
+    """The single pictures of rendered(), as replay reads them."""
+    name = PROJECT_NAMES[fourcc]
+    folder = environment.build("hil/frames", f"{size[0]}x{size[1]}", name)
+    files = sorted(folder.glob(f"*.{name}"))
+    if not files:
+        raise Skip(f"no rendered frames in {folder}")
+    return files
 
 
 def noise(fourcc, size, count=4):

@@ -1,0 +1,51 @@
+"""Unplugged and replugged in mid-stream, its device number changing: boled streams again."""
+
+import time
+
+from rig import environment, frames
+from rig.appliance import Boled, Listener
+from rig.camera import Camera
+from rig.wait import expect
+
+SMOKE = True
+TIME_LIMIT_S = 300
+SIZE = (640, 480)
+OUTAGE_SEEN_WITHIN_S = 0.5
+STREAMS_AGAIN_WITHIN_S = 2.0
+
+
+def run():
+    rounds = 3 if environment.is_smoke() else 20
+    mode = frames.rendered("YUYV", SIZE)
+    seen, again, devices = [], [], set()
+    with Camera([mode], rates=(10,)) as camera, Listener() as listener:
+        camera.plug()
+        with Boled(f"v4l2:{camera.link}", SIZE) as boled:
+            listener.wait_for_list(60)
+            replug(camera, listener)  # the first outage may load what later ones have
+            holdings = boled.holdings()
+            for _ in range(rounds):
+                outage_s, back_s = replug(camera, listener)
+                seen.append(outage_s)
+                again.append(back_s)
+                devices.add(camera.device)
+            expect(boled.holdings(), holdings, "what boled holds after all that")
+    assert len(devices) > 1, f"the device was always {devices}"
+    assert max(seen) <= OUTAGE_SEEN_WITHIN_S, f"outage seen after {max(seen):.2f} s"
+    assert max(again) <= STREAMS_AGAIN_WITHIN_S, f"streaming again after {max(again):.2f} s"
+    return (f"{rounds} times; no camera seen within {max(seen):.2f} s, "
+            f"a list again within {max(again):.2f} s")
+
+
+def replug(camera, listener):
+    """Seconds from pulling out to the status that says so, and from plugging in to a list."""
+    with open(camera.device):  # keeps its number: the camera comes back under another
+        mark = listener.mark()
+        unplugged = time.monotonic()
+        camera.unplug()
+        outage_seen, _ = listener.wait_for_state("no camera", 10, mark)
+        mark = listener.mark()
+        plugged = time.monotonic()
+        camera.plug()
+        back, _ = listener.wait_for_list(30, mark)
+    return outage_seen - unplugged, back - plugged
