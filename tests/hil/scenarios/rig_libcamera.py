@@ -25,9 +25,9 @@ def run():
         cam("--camera", camera_id(camera), "--stream", "width=640,height=480,pixelformat=YUYV",
             "--capture=5", f"--file={recording}")
         source = mode.frames()
-        shown = [source.index(frame) for frame in mode.split(recording.read_bytes())]
-        # The pipeline may throw the first ones away.
-        expect(shown, [(shown[0] + i) % len(source) for i in range(5)], "frames")
+        recorded = mode.split(recording.read_bytes())
+        expect(len(recorded), 5, "frames")
+        expect(sum(frame not in source for frame in recorded), 0, "frames that are not ours")
 
 
 def cam(*arguments):
