@@ -9,6 +9,7 @@
 #include <cstring>
 #include <string>
 #include <system_error>
+#include <utility>
 
 namespace hil {
 namespace {
@@ -73,6 +74,22 @@ bole::UniqueFd attach(unsigned port) {
 }  // namespace
 
 std::optional<UsbipCommand> UsbipLink::receive() {
+  if (held_back_) return *std::exchange(held_back_, std::nullopt);
+  while (true) {
+    auto command = receive_next();
+    if (!command) return std::nullopt;
+    if (const auto* submit = std::get_if<Submit>(&*command)) {
+      last_submit_ = submit->sequence;
+      if (const auto early = early_.extract(submit->sequence)) held_back_ = early.mapped();
+      return command;
+    }
+    const Unlink& unlink = std::get<Unlink>(*command);
+    if (unlink.victim <= last_submit_) return command;
+    early_.emplace(unlink.victim, unlink);
+  }
+}
+
+std::optional<UsbipCommand> UsbipLink::receive_next() {
   Header header;
   if (!receive_all(bytes_of(header))) return std::nullopt;
   const uint32_t sequence = ntohl(header.sequence);

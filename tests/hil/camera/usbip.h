@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <variant>
@@ -38,7 +39,9 @@ class UsbipLink {
  public:
   explicit UsbipLink(bole::UniqueFd socket) : socket_(std::move(socket)) {}
 
-  /// The next command, or nothing once the kernel or `shut_down` has ended the connection.
+  /// The next command, or nothing once the kernel or `shut_down` has ended the connection. An
+  /// Unlink always comes after its victim: vhci_hcd's sender may send them the other way round when
+  /// a driver takes a request back at once, and gives the device up if both are then answered.
   std::optional<UsbipCommand> receive();
 
   /// Answers a Submit. `status` is 0 or a negative errno (-EPIPE is a STALL); `data` goes to the
@@ -52,10 +55,14 @@ class UsbipLink {
   void shut_down();
 
  private:
+  std::optional<UsbipCommand> receive_next();
   bool send_all(std::span<const uint8_t> bytes);
   bool receive_all(std::span<uint8_t> bytes);
 
   bole::UniqueFd socket_;
+  uint32_t last_submit_ = 0;
+  std::map<uint32_t, Unlink> early_;  // by victim: its Submit has not come yet
+  std::optional<Unlink> held_back_;   // of the Submit that receive() gave last
 };
 
 /// One port of vhci_hcd.0 with a device in it.
