@@ -68,6 +68,7 @@ void add_options(CLI::App& app, Options& options) {
       "Stamp replayed frames with the time of the replay");
   number("--start", "source.start_s", "Of a replay: seconds to leave out at the start");
   number("--end", "source.end_s", "Of a replay: seconds after which it ends");
+  text("--faults", "source.faults", "Of a replay: a script of what goes wrong");
   app.add_option("--publish", options.publish,
                  "lcm, zenoh, jsonl:PATH, jsonl:- for standard output")
       ->delimiter(',');

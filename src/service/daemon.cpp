@@ -66,7 +66,7 @@ void run_daemon(const DaemonConfig& config, const std::string& version, int stop
   const Camera camera = load_camera(config.camera.file);
   const WarpTable table = open_table(config.camera, camera);
   SourceSetup setup = make_source(config, camera);
-  std::vector<std::unique_ptr<Publisher>> publishers = make_publishers(config);
+  std::vector<std::unique_ptr<Publisher>> publishers = make_publishers(config, camera);
 
   ProcessorOptions options;
   options.mode = config.detect.mode;

@@ -84,6 +84,8 @@ void read_source(TomlTable table, DaemonConfig::SourcePart& source) {
   source.start = table.number("start_s", source.start, kSeconds);
   if (table.has("end_s")) source.end = table.required_number("end_s", kSeconds);
   source.rate = table.number("rate_hz", source.rate, {0.01, 1000});
+  source.faults = table.text("faults", "");
+  source.camera = read_camera_settings(table);
   table.done();
 }
 
@@ -109,6 +111,23 @@ void read_publish(TomlTable table, DaemonConfig::PublishPart& publish) {
   }
   publish.min_score = table.number("min_score", publish.min_score, {0, 1});
   publish.robot = key_name(table, "robot", publish.robot, 64);
+  table.done();
+}
+
+void read_zenoh(TomlTable table, ZenohConfig& zenoh) {
+  zenoh.mode = table.text("mode", "");
+  zenoh.listen = table.texts("listen", {});
+  zenoh.connect = table.texts("connect", {});
+  if (table.has("multicast_scouting")) {
+    zenoh.multicast_scouting = table.boolean("multicast_scouting", false);
+  }
+  TomlTable tls = table.table("tls");
+  zenoh.tls.ca = tls.text("ca", "");
+  zenoh.tls.certificate = tls.text("certificate", "");
+  zenoh.tls.private_key = tls.text("private_key", "");
+  if (tls.has("mutual")) zenoh.tls.mutual = tls.boolean("mutual", false);
+  tls.done();
+  zenoh.config_file = table.text("config_file", "");
   table.done();
 }
 
@@ -146,8 +165,13 @@ DaemonConfig load_daemon_config(const std::optional<std::filesystem::path>& file
   TomlTable lcm = root.table("lcm");
   config.lcm = parse_lcm_url(lcm.text("url", kDefaultLcmUrl), origin, "lcm.url");
   lcm.done();
+  config.zenoh.file = origin;
+  read_zenoh(root.table("zenoh"), config.zenoh);
   read_service(root.table("service"), config.service);
   root.done();
+  std::ostringstream text;
+  text << merged << '\n';
+  config.text = text.str();
   return config;
 }
 

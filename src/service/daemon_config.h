@@ -11,8 +11,10 @@
 #include <toml++/toml.h>
 
 #include "base/toml_table.h"
+#include "capture/camera_settings.h"
 #include "detect/detector.h"
 #include "publish/lcm_url.h"
+#include "publish/zenoh_session.h"
 
 namespace bole {
 
@@ -40,6 +42,8 @@ struct DaemonConfig {
     double start = 0;                                      ///< seconds
     double end = std::numeric_limits<double>::infinity();  ///< seconds
     double rate = 10;                                      ///< Hz, of files without stamps
+    std::filesystem::path faults;                          ///< script of a replay's faults
+    CameraSettings camera;
   } source;
 
   struct DetectPart {
@@ -54,11 +58,14 @@ struct DaemonConfig {
   } publish;
 
   LcmUrl lcm;
+  ZenohConfig zenoh;
 
   struct ServicePart {
     int realtime_priority = 0;  ///< SCHED_FIFO priority of capture and processing; 0: none
     bool lock_memory = false;
   } service;
+
+  std::string text;  ///< the file and the settings in one, as TOML
 };
 
 /// A key=value of the command line: the dotted key and TOML. What is not TOML and holds neither

@@ -5,11 +5,13 @@
 
 #include "publish/publisher.h"
 #include "service/daemon_config.h"
+#include "warp/camera_files.h"
 
 namespace bole {
 
 /// The buses that the configuration names, in its order. Throws ConfigError for one that cannot be:
 /// a file that cannot be written, a bus that this build does not have.
-std::vector<std::unique_ptr<Publisher>> make_publishers(const DaemonConfig& config);
+std::vector<std::unique_ptr<Publisher>> make_publishers(const DaemonConfig& config,
+                                                        const Camera& camera);
 
 }  // namespace bole

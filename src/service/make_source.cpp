@@ -3,7 +3,9 @@
 #include <string_view>
 
 #include "base/errors.h"
+#include "capture/replay/faults.h"
 #include "capture/replay/replay_source.h"
+#include "capture/v4l2/v4l2_source.h"
 
 namespace bole {
 namespace {
@@ -29,6 +31,21 @@ SourceSetup make_replay(const DaemonConfig::SourcePart& part, const std::string&
     setup.clock = std::make_unique<SystemClock>();
   }
   setup.source = make_replay_source(options, *setup.clock);
+  if (!part.faults.empty()) {
+    setup.source =
+        make_faulty_source(std::move(setup.source), read_faults(part.faults), *setup.clock);
+  }
+  return setup;
+}
+
+SourceSetup make_v4l2(const DaemonConfig::SourcePart& part, const std::string& device,
+                      const Camera& camera) {
+  CameraSettings settings = part.camera;
+  settings.size = camera.model->image_size();
+  SourceSetup setup;
+  setup.kind = ListSource::v4l2;
+  setup.clock = std::make_unique<SystemClock>();
+  setup.source = make_v4l2_source(device, settings, *setup.clock);
   return setup;
 }
 
@@ -40,6 +57,7 @@ SourceSetup make_source(const DaemonConfig& config, const Camera& camera) {
   const std::string scheme = uri.substr(0, colon);
   const std::string rest = colon == std::string::npos ? "" : uri.substr(colon + 1);
   if (scheme == "replay" && !rest.empty()) return make_replay(config.source, rest, camera);
+  if (scheme == "v4l2" && !rest.empty()) return make_v4l2(config.source, rest, camera);
   throw ConfigError("source", "uri", uri.empty() ? "is missing" : "is \"" + uri + "\"",
                     "must be v4l2:DEVICE, libcamera:ID or replay:PATH");
 }
