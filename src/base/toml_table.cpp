@@ -73,7 +73,11 @@ double TomlTable::required_number(std::string_view key, Bounds bounds) {
 }
 
 int TomlTable::integer(std::string_view key, int fallback, Bounds bounds) {
-  const double value = number(key, fallback, bounds);
+  return find(key) == nullptr ? fallback : required_integer(key, bounds);
+}
+
+int TomlTable::required_integer(std::string_view key, Bounds bounds) {
+  const double value = required_number(key, bounds);
   if (value != std::floor(value)) fail(key, "is " + shown(value), "must be a whole number");
   return static_cast<int>(value);
 }

@@ -34,6 +34,7 @@ class TomlTable {
   /// As above, the key must be there.
   double required_number(std::string_view key, Bounds bounds);
   int integer(std::string_view key, int fallback, Bounds bounds);
+  int required_integer(std::string_view key, Bounds bounds);
   bool boolean(std::string_view key, bool fallback);
   std::string text(std::string_view key, std::string_view fallback);
   /// One of `choices`.

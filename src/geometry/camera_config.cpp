@@ -22,8 +22,8 @@ void read_camera(TomlTable table, CameraConfig& config) {
   config.mask = table.text("mask", "");
   if (config.model == CameraConfig::Model::pinhole && config.calibration.empty()) {
     config.horizontal_fov = radians(table.required_number("horizontal_fov_deg", {1, 170}));
-    config.size.width = static_cast<int>(table.required_number("width", {1, 20000}));
-    config.size.height = static_cast<int>(table.required_number("height", {1, 20000}));
+    config.size.width = table.required_integer("width", {1, 20000});
+    config.size.height = table.required_integer("height", {1, 20000});
   } else if (config.calibration.empty()) {
     table.fail("calibration", "is missing", "name OCamCalib's calib_results.txt");
   }
@@ -68,6 +68,20 @@ void read_search(TomlTable table, CameraConfig& config) {
 }
 
 constexpr int kMostRows = 8192;
+constexpr int kMostPixels = 1 << 24;
+
+void require_sensible_size(const TomlTable& root, const PanoramaGeometry& panorama) {
+  if (panorama.rows >= 16 && panorama.rows <= kMostRows &&
+      panorama.rows <= kMostPixels / panorama.columns) {
+    return;
+  }
+  root.fail("panorama",
+            "has " + std::to_string(panorama.rows) + " rows of " +
+                std::to_string(panorama.columns) + " pixels",
+            "elevation_top_deg, range_min_m, columns and mount.height_m must give 16 to " +
+                std::to_string(kMostRows) + " rows and at most " + std::to_string(kMostPixels) +
+                " pixels");
+}
 
 }  // namespace
 
@@ -79,12 +93,7 @@ CameraConfig parse_camera_config(std::string_view text, const std::string& file)
   read_panorama(root.table("panorama"), config);
   read_search(root.table("search"), config);
   root.done();
-  const int rows = panorama_of(config).rows;
-  if (rows < 16 || rows > kMostRows) {
-    root.fail("panorama", "has " + std::to_string(rows) + " rows",
-              "elevation_top_deg, range_min_m, columns and mount.height_m must give 16 to " +
-                  std::to_string(kMostRows));
-  }
+  require_sensible_size(root, panorama_of(config));
   return config;
 }
 

@@ -89,6 +89,14 @@ std::vector<double> matrix(const YAML::Node& root, const char* key, std::size_t 
   return values;
 }
 
+int side(const YAML::Node& root, const char* key, const std::string& file) {
+  const int pixels = root[key].as<int>();
+  if (pixels < 1 || pixels > 20000) {
+    throw ConfigError(file, key, "is " + std::to_string(pixels), "must be from 1 to 20000");
+  }
+  return pixels;
+}
+
 }  // namespace
 
 PinholeModel parse_pinhole(std::string_view text, const std::string& file) {
@@ -104,7 +112,7 @@ PinholeModel parse_pinhole(std::string_view text, const std::string& file) {
         .centre_column = k[2],
         .centre_row = k[5],
         .distortion = {},
-        .size = {root["image_width"].as<int>(), root["image_height"].as<int>()}};
+        .size = {side(root, "image_width", file), side(root, "image_height", file)}};
     std::ranges::copy(distortion, p.distortion.begin());
     return PinholeModel(p);
   } catch (const YAML::Exception& error) {

@@ -1,0 +1,153 @@
+#include "geometry/camera_config.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/errors.h"
+#include "geometry/angles.h"
+
+namespace bole {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr std::string_view kOmni = R"(
+[camera]
+model = "ocam"
+calibration = "calib_results.txt"
+mask = "mask.png"
+[mount]
+height_m = 1.05
+forward = "image up"
+left = "image right"
+centre = "down"
+roll_deg = 1.3
+pitch_deg = -0.8
+yaw_deg = 4.0
+[panorama]
+columns = 1440
+elevation_top_deg = 27
+range_min_m = 0.9
+[search]
+range_m = [1.0, 8.0]
+diameter_m = [0.2, 0.8]
+)";
+
+constexpr std::string_view kPhoto = R"(
+[camera]
+model = "pinhole"
+horizontal_fov_deg = 60
+width = 640
+height = 480
+[mount]
+height_m = 1.5
+horizon_row = 350
+[panorama]
+range_min_m = 2
+)";
+
+CameraConfig parse(std::string_view text) { return parse_camera_config(text, "camera.toml"); }
+
+std::string with(std::string_view base, const std::string& from, const std::string& to) {
+  std::string text(base);
+  return text.replace(text.find(from), from.size(), to);
+}
+
+std::string problem_of(const std::string& text) {
+  try {
+    parse(text);
+    return "none";
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("camera.toml: "), Not(HasSubstr("\n"))));
+    return error.what();
+  }
+}
+
+std::string omni_problem(const std::string& from, const std::string& to) {
+  return problem_of(with(kOmni, from, to));
+}
+
+TEST(CameraConfig, ReadsEveryKeyInSiUnits) {
+  const CameraConfig config = parse(kOmni);
+  EXPECT_EQ(config.model, CameraConfig::Model::ocam);
+  EXPECT_EQ(config.calibration, "calib_results.txt");
+  EXPECT_EQ(config.mask, "mask.png");
+  EXPECT_EQ(config.mount.height, 1.05);
+  EXPECT_EQ(config.mount.left, ImageSide::right);
+  EXPECT_TRUE(config.mount.centre_looks_down);
+  EXPECT_DOUBLE_EQ(config.mount.roll, radians(1.3));
+  EXPECT_DOUBLE_EQ(config.mount.pitch, radians(-0.8));
+  EXPECT_DOUBLE_EQ(config.mount.yaw, radians(4));
+  EXPECT_EQ(panorama_of(config).rows, 385);
+  EXPECT_EQ(config.search.range.high, 8.0);
+  EXPECT_EQ(config.search.diameter.low, 0.2);
+}
+
+TEST(CameraConfig, APhotographNeedsNoCalibration) {
+  const CameraConfig config = parse(kPhoto);
+  EXPECT_EQ(config.model, CameraConfig::Model::pinhole);
+  EXPECT_DOUBLE_EQ(config.horizontal_fov, radians(60));
+  EXPECT_EQ(config.size, (ImageSize{640, 480}));
+  EXPECT_EQ(config.horizon_row, 350);
+}
+
+TEST(CameraConfig, UnknownKeysAreNamedWhereverTheyStand) {
+  EXPECT_THAT(omni_problem("mask =", "mesk ="), HasSubstr("camera.mesk: is not a known key"));
+  EXPECT_THAT(omni_problem("roll_deg", "roll"), HasSubstr("mount.roll"));
+  EXPECT_THAT(omni_problem("columns", "colums"), HasSubstr("panorama.colums"));
+  EXPECT_THAT(omni_problem("diameter_m", "diameter"), HasSubstr("search.diameter"));
+  EXPECT_THAT(omni_problem("[search]", "[serach]"), HasSubstr("serach"));
+  EXPECT_THAT(omni_problem("calibration", "width = 640\ncalibration"), HasSubstr("camera.width"));
+}
+
+TEST(CameraConfig, OutOfRangeValuesAreNamedWithTheirKey) {
+  EXPECT_THAT(omni_problem("1.05", "-1.05"), HasSubstr("mount.height_m: is -1.05"));
+  EXPECT_THAT(omni_problem("1.05", "0"), HasSubstr("mount.height_m"));
+  EXPECT_THAT(omni_problem("1.05", "nan"), HasSubstr("mount.height_m"));
+  EXPECT_THAT(omni_problem("1.05", "inf"), HasSubstr("mount.height_m"));
+  EXPECT_THAT(omni_problem("[1.0, 8.0]", "[8.0, 1.0]"), HasSubstr("search.range_m"));
+  EXPECT_THAT(omni_problem("[1.0, 8.0]", "[1.0]"), HasSubstr("search.range_m"));
+  EXPECT_THAT(omni_problem("[1.0, 8.0]", "[1.0, nan]"), HasSubstr("search.range_m"));
+  EXPECT_THAT(omni_problem("[0.2, 0.8]", "[0, 0.8]"), HasSubstr("search.diameter_m"));
+  EXPECT_THAT(omni_problem("[0.2, 0.8]", "[0.2, \"wide\"]"), HasSubstr("search.diameter_m"));
+  EXPECT_THAT(omni_problem("1440", "0"), HasSubstr("panorama.columns"));
+  EXPECT_THAT(omni_problem("1440", "1441"), HasSubstr("panorama.columns"));
+  EXPECT_THAT(omni_problem("1440", "1e9"), HasSubstr("panorama.columns"));
+  EXPECT_THAT(omni_problem("= 0.9", "= 0"), HasSubstr("panorama.range_min_m"));
+  EXPECT_THAT(omni_problem("= 27", "= 90"), HasSubstr("panorama.elevation_top_deg"));
+}
+
+TEST(CameraConfig, APanoramaWithHardlyAnyOrTooManyRowsIsRefused) {
+  EXPECT_THAT(omni_problem("= 27", "= -30"), HasSubstr("none"));
+  EXPECT_THAT(problem_of(with(with(kOmni, "= 27", "= -30"), "= 0.9", "= 2")), HasSubstr("rows"));
+  EXPECT_THAT(omni_problem("= 0.9", "= 0.05"), HasSubstr("none"));
+  EXPECT_THAT(problem_of(with(with(kOmni, "= 0.9", "= 0.05"), "1440", "8192")), HasSubstr("rows"));
+}
+
+TEST(CameraConfig, MissingOrMistypedKeysAreNamed) {
+  EXPECT_THAT(problem_of(""), HasSubstr("camera"));
+  EXPECT_THAT(omni_problem("height_m = 1.05\n", ""), HasSubstr("mount.height_m: is missing"));
+  EXPECT_THAT(omni_problem("1.05", "\"1.05\""), HasSubstr("mount.height_m: is not a number"));
+  EXPECT_THAT(omni_problem("calibration = \"calib_results.txt\"\n", ""),
+              HasSubstr("camera.calibration: is missing"));
+  EXPECT_THAT(omni_problem("\"ocam\"", "\"laser\""), HasSubstr("camera.model"));
+  EXPECT_THAT(omni_problem("[mount]", "mount = 3\n[moved]"), HasSubstr("mount"));
+  EXPECT_THAT(omni_problem("image right", "image down"), HasSubstr("same axis as forward"));
+  EXPECT_THAT(omni_problem("image right", "right"), HasSubstr("mount.left"));
+  EXPECT_THAT(omni_problem("[mount]", "[mount"), HasSubstr("line "));
+}
+
+TEST(CameraConfig, APhotographsHorizonOrPitchNotBoth) {
+  EXPECT_THAT(problem_of(with(kPhoto, "horizon_row = 350", "horizon_row = 350\npitch_deg = 2")),
+              HasSubstr("mount.horizon_row"));
+  EXPECT_THAT(problem_of(with(kPhoto, "60", "180")), HasSubstr("camera.horizontal_fov_deg"));
+  EXPECT_THAT(problem_of(with(kPhoto, "640", "-640")), HasSubstr("camera.width"));
+  EXPECT_THAT(problem_of(with(kPhoto, "640", "640.5")), HasSubstr("camera.width"));
+  EXPECT_THAT(problem_of(with(kPhoto, "1.5\n", "1.5\nleft = \"image left\"\n")),
+              HasSubstr("mount.left"));
+}
+
+}  // namespace
+}  // namespace bole

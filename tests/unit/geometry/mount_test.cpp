@@ -1,0 +1,84 @@
+#include "geometry/mount.h"
+
+#include <gtest/gtest.h>
+
+#include "geometry/angles.h"
+
+namespace bole {
+namespace {
+
+void expect_near(const Vec3& a, const Vec3& b) {
+  EXPECT_NEAR(a.x, b.x, 1e-12);
+  EXPECT_NEAR(a.y, b.y, 1e-12);
+  EXPECT_NEAR(a.z, b.z, 1e-12);
+}
+
+double determinant(const Mat3& m) {
+  const auto& [a, b, c] = m.rows;
+  return a.x * (b.y * c.z - b.z * c.y) - a.y * (b.x * c.z - b.z * c.x) +
+         a.z * (b.x * c.y - b.y * c.x);
+}
+
+// OCamCalib's rays: x down the image, y to its right.
+constexpr Vec3 kImageUp{-1, 0, 0}, kImageLeft{0, -1, 0}, kImageRight{0, 1, 0};
+
+TEST(Mount, OfACameraThatLooksDownLeftIsLeft) {
+  const Mat3 r = robot_from_omni_camera({});
+  expect_near(r * kImageUp, {1, 0, 0});
+  expect_near(r * kImageLeft, {0, 1, 0});
+  expect_near(r * Vec3{0, 0, -1}, {0, 0, -1});  // the middle sees the ground
+}
+
+TEST(Mount, UnderAMirrorTheWorldIsMirrored) {
+  const Mat3 r = robot_from_omni_camera({.left = ImageSide::right});
+  expect_near(r * kImageUp, {1, 0, 0});
+  expect_near(r * kImageRight, {0, 1, 0});
+  EXPECT_NEAR(determinant(r) * determinant(robot_from_omni_camera({})), -1, 1e-12);
+}
+
+TEST(Mount, OfACameraThatLooksUpTheMiddleSeesTheSky) {
+  const Mat3 r = robot_from_omni_camera({.left = ImageSide::right, .centre_looks_down = false});
+  expect_near(r * Vec3{0, 0, -1}, {0, 0, 1});
+}
+
+TEST(Mount, ForwardMayLieOnAnySideOfTheImage) {
+  const Mat3 r = robot_from_omni_camera({.forward = ImageSide::right, .left = ImageSide::up});
+  expect_near(r * kImageRight, {1, 0, 0});
+  expect_near(r * kImageUp, {0, 1, 0});
+}
+
+TEST(Mount, PositivePitchLooksDownPositiveRollLiftsTheLeftPositiveYawTurnsLeft) {
+  const Vec3 forward = kImageUp, left = kImageLeft;
+  EXPECT_NEAR((robot_from_omni_camera({.pitch = 0.1}) * forward).z, -std::sin(0.1), 1e-12);
+  EXPECT_NEAR((robot_from_omni_camera({.roll = 0.1}) * left).z, std::sin(0.1), 1e-12);
+  EXPECT_NEAR((robot_from_omni_camera({.yaw = 0.1}) * forward).y, std::sin(0.1), 1e-12);
+}
+
+TEST(Mount, RollComesFirstThenPitchThenYaw) {
+  const Mount mount{.roll = 0.3, .pitch = -0.2, .yaw = 1.1};
+  const Vec3 v{0.2, -0.5, 0.7};
+  const Vec3 expected =
+      rotation_z(1.1) * (rotation_y(-0.2) * (rotation_x(0.3) * (robot_from_omni_camera({}) * v)));
+  expect_near(robot_from_omni_camera(mount) * v, expected);
+}
+
+TEST(Mount, OfACameraThatLooksAheadTheImagesLeftIsTheRobotsLeft) {
+  const Mat3 r = robot_from_forward_camera({.forward = ImageSide::down});  // sides do not matter
+  expect_near(r * Vec3{0, 0, 1}, {1, 0, 0});
+  expect_near(r * Vec3{-1, 0, 0}, {0, 1, 0});
+  expect_near(r * Vec3{0, 1, 0}, {0, 0, -1});
+}
+
+TEST(Mount, ThePitchOfTheHorizonMakesItsRayLevel) {
+  for (const double roll : {0.0, 0.2, -0.4}) {
+    for (const Vec3& ray : {Vec3{0, 0.2, 1}, Vec3{0.1, -0.3, 0.9}}) {
+      const double pitch = pitch_of_forward_camera(ray, roll);
+      EXPECT_NEAR((robot_from_forward_camera({.roll = roll, .pitch = pitch}) * ray).z, 0, 1e-12);
+    }
+  }
+  // A horizon below the image's middle: the camera looks up.
+  EXPECT_LT(pitch_of_forward_camera({0, 0.2, 1}, 0), 0);
+}
+
+}  // namespace
+}  // namespace bole
