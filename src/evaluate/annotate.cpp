@@ -1,0 +1,27 @@
+#include "evaluate/annotate.h"
+
+#include <stdexcept>
+
+#include <opencv2/imgcodecs.hpp>
+
+namespace bole {
+namespace {
+
+void write_picture(const std::filesystem::path& file, const cv::Mat3b& picture) {
+  if (!cv::imwrite(file.string(), picture)) {
+    throw std::runtime_error("cannot write " + file.string());
+  }
+}
+
+}  // namespace
+
+void write_annotations(const std::filesystem::path& folder, const std::string& name,
+                       const Camera& camera, const WarpTable& table, const cv::Mat3b& picture,
+                       std::span<const Tree> trees) {
+  std::filesystem::create_directories(folder);
+  write_picture(folder / (name + "_panorama.png"), draw_panorama(camera, table, picture, trees));
+  write_picture(folder / (name + "_raw.png"), draw_raw(camera, picture, trees));
+  write_picture(folder / (name + "_map.png"), draw_polar_map(camera.config.search, trees));
+}
+
+}  // namespace bole

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include <opencv2/core.hpp>
+
+#include "detect/tree.h"
+#include "warp/camera_files.h"
+#include "warp/warp_table.h"
+
+namespace bole {
+
+/// The pictures in which a person checks a list of trees against its frame.
+
+/// The panorama, twice its size, with the ground's lines at whole metres, and on each trunk its
+/// rectangle from the foot up, its score and its range.
+cv::Mat3b draw_panorama(const Camera& camera, const WarpTable& table, const cv::Mat3b& picture,
+                        std::span<const Tree> trees);
+
+/// The raw image with the same lines and rectangles, un-warped onto it, and the robot's forward and
+/// left named.
+cv::Mat3b draw_raw(const Camera& camera, const cv::Mat3b& picture, std::span<const Tree> trees);
+
+/// The ground seen from above, forward up and left to the left: feet and sizes of the trunks to
+/// scale, with the uncertainty of their range, on circles at whole metres.
+cv::Mat3b draw_polar_map(const Search& search, std::span<const Tree> trees);
+
+/// Writes all three as PNG: <folder>/<name>_panorama.png, _raw.png, _map.png. Throws
+/// std::runtime_error when that fails.
+void write_annotations(const std::filesystem::path& folder, const std::string& name,
+                       const Camera& camera, const WarpTable& table, const cv::Mat3b& picture,
+                       std::span<const Tree> trees);
+
+}  // namespace bole

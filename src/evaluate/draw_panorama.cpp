@@ -1,0 +1,87 @@
+#include <cmath>
+
+#include <opencv2/imgproc.hpp>
+
+#include "evaluate/annotate.h"
+#include "evaluate/drawing.h"
+#include "evaluate/image_detector.h"
+#include "geometry/ground.h"
+
+namespace bole {
+namespace {
+
+constexpr double kScale = 2;
+const Colour kGround(230, 220, 170);
+
+// Where a place of the panorama, its pixel centres at whole numbers, lies in the picture.
+cv::Point2d at(double column, double row) {
+  return {(column + 0.5) * kScale - 0.5, (row + 0.5) * kScale - 0.5};
+}
+
+// What the camera does not see was filled from what it sees: shown darker.
+void darken_unseen(cv::Mat3b& canvas, const WarpTable& table) {
+  const PanoramaGeometry& panorama = table.panorama();
+  const cv::Mat1b seen(panorama.rows, panorama.width,
+                       const_cast<std::uint8_t*>(table.seen().pixels.data()));
+  cv::Mat1b unseen;
+  cv::resize(seen == 0, unseen, canvas.size(), 0, 0, cv::INTER_NEAREST);
+  cv::Mat3b dark;
+  canvas.convertTo(dark, -1, 0.35);
+  dark.copyTo(canvas, unseen);
+}
+
+void draw_depths(cv::Mat3b& canvas, Labels& labels, const PanoramaGeometry& panorama,
+                 const Camera& camera) {
+  cv::Mat3b lines = canvas.clone();
+  std::vector<std::pair<double, double>> drawn;  // depth and row
+  for (const double depth : marked_distances(0, camera.config.search.range.high)) {
+    const double row = panorama.row_of_tangent(ground_tangent(depth, camera.config.mount.height));
+    if (row > panorama.rows - 1 || (!drawn.empty() && drawn.back().second - row < 3)) continue;
+    draw_line(lines, {at(-0.5, row), at(panorama.width, row)}, kGround);
+    drawn.emplace_back(depth, row);
+  }
+  cv::addWeighted(lines, 0.55, canvas, 0.45, 0, canvas);
+  for (const auto& [depth, row] : drawn) {
+    labels.add(fixed(depth, 0) + " m", at(14, row + 4), kGround, 0.4);
+  }
+}
+
+// The rectangle from the foot to the top of the picture, once more a turn on where it crosses the
+// seam.
+void draw_trunk(cv::Mat3b& canvas, const PanoramaGeometry& panorama, const Tree& tree) {
+  const double centre = panorama.column_of_bearing(tree.bearing);
+  const double half = tree.angular_width * panorama.focal() / 2;
+  const double foot = panorama.row_of_tangent(std::tan(tree.base_elevation));
+  const Colour colour = colour_of_score(tree.score);
+  for (const double turn : {-1, 0, 1}) {
+    const double column = centre + turn * panorama.columns;
+    if (column + half < 0 || column - half > panorama.width - 1) continue;
+    draw_line(canvas,
+              {at(column - half, -2), at(column - half, foot), at(column + half, foot),
+               at(column + half, -2)},
+              colour, 2, true);
+  }
+}
+
+void draw_numbers(Labels& labels, const PanoramaGeometry& panorama, const Tree& tree) {
+  const double column = panorama.column_of_bearing(tree.bearing);
+  const double foot = panorama.row_of_tangent(std::tan(tree.base_elevation));
+  labels.add(fixed(tree.score, 2), at(column, foot + 10), colour_of_score(tree.score), 0.42);
+  labels.add(fixed(tree.range, 1) + " m", at(column, foot + 20), {255, 255, 255}, 0.42);
+}
+
+}  // namespace
+
+cv::Mat3b draw_panorama(const Camera& camera, const WarpTable& table, const cv::Mat3b& picture,
+                        std::span<const Tree> trees) {
+  const PanoramaGeometry& panorama = table.panorama();
+  cv::Mat3b canvas = colour_panorama(table, picture, kScale);
+  darken_unseen(canvas, table);
+  Labels labels(canvas);
+  draw_depths(canvas, labels, panorama, camera);
+  for (const Tree& tree : trees) draw_trunk(canvas, panorama, tree);
+  for (const Tree& tree : trees) draw_numbers(labels, panorama, tree);
+  return canvas;
+}
+
+}  // namespace bole

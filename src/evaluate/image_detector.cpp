@@ -1,0 +1,56 @@
+#include "evaluate/image_detector.h"
+
+#include <stdexcept>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "warp/table_cache.h"
+
+namespace bole {
+
+cv::Mat3b read_picture(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) throw std::runtime_error("is not there");
+  if (!std::filesystem::is_regular_file(file)) throw std::runtime_error("is not a file");
+  try {
+    const cv::Mat picture =
+        cv::imread(file.string(), cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+    if (!picture.empty()) return picture;
+  } catch (const cv::Exception&) {  // too large
+  }
+  throw std::runtime_error("is no picture that can be read");
+}
+
+ImageDetector::ImageDetector(const std::filesystem::path& camera_toml, DetectorMode mode)
+    : camera_(load_camera(camera_toml)),
+      table_(load_or_build_warp_table(camera_, default_cache_directory()).table),
+      warper_(table_),
+      detector_(make_detector(mode, {.panorama = table_.panorama(),
+                                     .seen = table_.seen(),
+                                     .height = camera_.config.mount.height,
+                                     .search = camera_.config.search})) {}
+
+PanoramaView ImageDetector::warp(const cv::Mat3b& picture) {
+  const std::span bytes(reinterpret_cast<const std::byte*>(picture.data),
+                        picture.step * static_cast<std::size_t>(picture.rows));
+  return warper_.warp({PixelFormat::bgr24,
+                       {picture.cols, picture.rows},
+                       {Plane{bytes, static_cast<int>(picture.step)}, Plane{}}});
+}
+
+cv::Mat3b colour_panorama(const WarpTable& table, const cv::Mat3b& picture, double scale) {
+  const PanoramaGeometry& panorama = table.panorama();
+  cv::Mat2f source(panorama.rows, panorama.width);
+  for (int i = 0; i < panorama.rows; ++i) {
+    for (int j = 0; j < panorama.width; ++j) {
+      const Pixel pixel = table.source(i, j);
+      source(i, j) = {static_cast<float>(pixel.column), static_cast<float>(pixel.row)};
+    }
+  }
+  cv::Mat3b colours;
+  cv::remap(picture, colours, source, cv::noArray(), cv::INTER_LINEAR);
+  cv::resize(colours, colours, {}, scale, scale, cv::INTER_CUBIC);
+  return colours;
+}
+
+}  // namespace bole
