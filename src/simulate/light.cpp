@@ -36,10 +36,9 @@ float Sunlight::at(float x, float y, float z, int self) const {
   const float reach = (kCrowns - z) / look.sun_slope;
   const float crown_x = (x + look.sun_x * reach) * look.canopy_scale;
   const float crown_y = (y + look.sun_y * reach) * look.canopy_scale;
-  const float holes = 0.65F * noise(crown_x, crown_y, world_.seed + 77) +
-                      0.35F * noise(crown_x * 3.1F, crown_y * 3.1F, world_.seed + 78);
-  const float threshold = 0.9F * (look.canopy * 2 - 1);
-  float light = smooth_step(threshold - 0.12F, threshold + 0.12F, holes);
+  const float holes = fractal(crown_x, crown_y, 1, 3, 0.7F, 0, world_.seed + 77);
+  const float threshold = look.canopy * 2 - 1;
+  float light = smooth_step(threshold - 0.1F, threshold + 0.15F, 1.4F * holes);
   if (light <= 0) return 0;
 
   const float place = (y * look.sun_x - x * look.sun_y - low_) / kStrip;

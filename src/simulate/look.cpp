@@ -21,7 +21,9 @@ void draw_ground(Random& random, Look& look) {
       {1.15F, 0.95F, 0.75F}, {1.25F, 0.9F, 0.8F}, {1, 1, 0.9F}, {0.8F, 1.1F, 0.5F}};
   look.litter = tinted(random, kTints[random.bits() % 4], random.uniform(0.1F, 0.42F));
   look.soil = tinted(random, {1.1F, 1, 0.85F}, random.uniform(0.06F, 0.5F));
-  look.moss = tinted(random, {0.75F, 1.25F, 0.35F}, random.uniform(0.08F, 0.4F));
+  look.moss = tinted(
+      random, mix(Colour{0.8F, 1.15F, 0.4F}, Colour{1.15F, 1.05F, 0.6F}, random.uniform(0, 1)),
+      random.uniform(0.06F, 0.35F));
   look.litter_scale = random.uniform(6, 25);
   look.litter_contrast = random.uniform(0.25F, 0.9F);
   look.patches = random.uniform(0, 0.6F);
@@ -34,24 +36,26 @@ void draw_light(Random& random, Look& look) {
   look.sun_x = std::cos(bearing);
   look.sun_y = std::sin(bearing);
   look.sun_slope = std::tan(random.uniform(0.3F, 1.2F));
-  look.sun_strength = random.chance(0.3F) ? random.uniform(0, 0.4F) : random.uniform(0.8F, 3);
-  look.canopy = random.uniform(0.1F, 0.95F);
+  look.sun_strength = random.chance(0.25F) ? random.uniform(0, 0.4F) : random.uniform(0.8F, 3.5F);
+  look.canopy = random.uniform(0.1F, 0.8F);
   look.canopy_scale = random.uniform(0.25F, 1.2F);
   const float sky = random.uniform(0.7F, 2.2F);
   look.sky_high =
       tinted(random, mix(Colour{0.7F, 0.9F, 1.4F}, Colour{1, 1, 1}, random.uniform(0, 1)),
              sky * random.uniform(0.6F, 1));
   look.sky_low = tinted(random, {0.95F, 1, 1.05F}, sky);
-  look.haze = mix(look.sky_low, Colour{0.6F, 0.65F, 0.6F}, 0.5F) * 0.6F;
+  look.haze = mix(look.sky_low, Colour{0.5F, 0.55F, 0.5F}, 0.6F) * random.uniform(0.3F, 0.7F);
 }
 
 void draw_backdrop(Random& random, Look& look, bool treeless) {
-  look.foliage = tinted(random, {0.7F, 1.2F, 0.45F}, random.uniform(0.04F, 0.3F));
+  look.foliage = draw_green(random) * random.uniform(0.3F, 0.8F);
   const bool open = random.chance(treeless ? 0.7F : 0.2F);
   look.backdrop_top = open ? random.uniform(0.02F, 0.25F) : random.uniform(0.4F, 2.0F);
   look.backdrop_cover = random.uniform(0.35F, 0.95F);
   look.stems = treeless || open ? 0 : random.uniform(0.1F, 0.8F);
   look.stem_light = random.uniform(0.1F, 0.7F);
+  look.interior = random.uniform(0.15F, 1.1F);
+  look.veil = random.uniform(-0.5F, 0.5F);
 }
 
 }  // namespace
@@ -63,7 +67,7 @@ Look draw_look(const SimOptions& o, Random& random, bool treeless) {
   draw_backdrop(random, look, treeless);
   look.fog = draw(random, o.fog) * random.uniform(0, 1);
   look.glare = draw(random, o.glare) * random.uniform(0, 1);
-  look.exposure = 0.85F * std::exp2(draw(random, o.exposure_stops));
+  look.stops = draw(random, o.exposure_stops);
   look.contrast = draw(random, o.contrast);
   look.vignetting = random.uniform(0.05F, 0.45F);
   look.blur_px = draw(random, o.blur_px);
@@ -89,8 +93,8 @@ Bark draw_bark(Random& random, bool bright) {
 }
 
 Colour draw_green(Random& random) {
-  const Colour tint = mix(Colour{0.6F, 1.3F, 0.4F}, Colour{1.1F, 1.1F, 0.5F}, random.uniform(0, 1));
-  return tinted(random, tint, random.uniform(0.06F, 0.4F));
+  const Colour tint = mix(Colour{0.7F, 1.15F, 0.45F}, Colour{1.25F, 1, 0.5F}, random.uniform(0, 1));
+  return tinted(random, tint, random.uniform(0.05F, 0.35F));
 }
 
 Colour draw_dull(Random& random) {

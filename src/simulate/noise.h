@@ -88,20 +88,20 @@ inline float resolved(float frequency, float footprint) {
   return 1 - smooth_step(0.3F, 1.0F, frequency * footprint);
 }
 
-/// Octaves of noise in [-1, 1], each twice as fine and `gain` times as strong as the one before;
-/// those finer than the pixel's footprint are left out, so that nothing flickers.
+/// Octaves of noise about 0, each twice as fine and `gain` times as strong as the one before, with
+/// the variance of a single one (a standard deviation of about 0.35); those finer than the pixel's
+/// footprint are left out, so that nothing flickers.
 inline float fractal(float x, float y, float frequency, int octaves, float gain, float footprint,
                      std::uint32_t seed) {
-  float sum = 0, strength = 1, total = 0;
+  float sum = 0, strength = 1, power = 0;
   for (int octave = 0; octave < octaves; ++octave) {
     const float left = resolved(frequency, footprint);
-    if (left <= 0) break;
-    sum += strength * left * noise(x * frequency, y * frequency, seed + octave);
-    total += strength;
+    if (left > 0) sum += strength * left * noise(x * frequency, y * frequency, seed + octave);
+    power += strength * strength;
     frequency *= 2.03F;
     strength *= gain;
   }
-  return total > 0 ? sum / total : 0;
+  return sum / std::sqrt(power);
 }
 
 }  // namespace bole::simulate

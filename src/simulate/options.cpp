@@ -8,13 +8,13 @@ namespace {
 SimOptions varied() {
   SimOptions o;
   o.frames_per_world = 1;
-  o.trees_per_ha = {60, 1200};
+  o.trees_per_ha = {40, 1000};
   o.bright_share = {0.05F, 0.6F};
   o.slope = {0, 0.25F};
   o.undulation = {0, 0.15F};
   o.attitude_deg = {0, 2};
   o.foot_cover = {0, 1};
-  o.bushes_per_ha = {0, 500};
+  o.bushes_per_ha = {0, 900};
   o.clutter_per_ha = {0, 250};
   o.walls = {0, 3};
   o.exposure_stops = {-1.8F, 1.2F};

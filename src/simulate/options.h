@@ -17,17 +17,17 @@ struct Span {
 ///   treeless varied worlds without a trunk: whatever is found there is wrong
 struct SimOptions {
   int frames_per_world = 0;          ///< 0: one world for the whole drive
-  Span trees_per_ha{250, 700};       ///< 0: treeless, no distant stems either
+  Span trees_per_ha{150, 600};       ///< 0: treeless, no distant stems either
   Span diameter{0.12F, 0.85F};       ///< metres, of trunks
   Span bright_share{0.05F, 0.4F};    ///< of trunks
   Span slope{0, 0.02F};              ///< rise over run of the ground as a whole
   Span undulation{0, 0.04F};         ///< metres, standard deviation of the ground about its slope
   Span attitude_deg{0.1F, 0.4F};     ///< standard deviation of the robot's unknown roll and pitch
   Span foot_cover{0.2F, 0.7F};       ///< share of trunks with grass or litter before their feet
-  Span bushes_per_ha{20, 150};       ///< also branches that hang before trunks
+  Span bushes_per_ha{50, 400};       ///< also branches that hang before trunks
   Span clutter_per_ha{10, 80};       ///< rocks, stumps, fallen logs, posts, people
   Span walls{0, 1};                  ///< number of hedges, walls and cliffs
-  Span exposure_stops{-0.4F, 0.4F};  ///< against a well exposed picture
+  Span exposure_stops{-0.4F, 0.4F};  ///< against automatic exposure
   Span contrast{0.9F, 1.2F};         ///< exponent on the grey levels after exposure
   Span fog{0, 0.008F};               ///< extinction a metre
   Span glare{0, 0.1F};               ///< veil of stray light around the sun, share of white

@@ -14,6 +14,8 @@ using Direction = PixelRays::Direction;
 constexpr std::array<std::array<float, 2>, 8> kPlaces = {
     {{-7, -3}, {-3, 5}, {1, -5}, {5, 3}, {-5, 7}, {-1, -1}, {3, 1}, {7, -7}}};
 
+constexpr double kMiddleGrey = 0.24;  // of linear light
+
 class Drawing {
  public:
   Drawing(const View& view, const Look& look, const PixelRays& rays, const Pose& pose)
@@ -44,7 +46,22 @@ class Drawing {
     }
   }
 
+  // As a camera's automatic exposure: the mean of the picture, highlights clipped, is a middle
+  // grey.
+  float exposure() const {
+    double sum = 0;
+    int seen = 0;
+    for (std::size_t i = 0; i < colours_.size(); ++i) {
+      if (surfaces_[i] < 0) continue;
+      sum += std::min(1.0F, colours_[i].g);
+      ++seen;
+    }
+    const double mean = seen > 0 ? sum / seen : 1;
+    return static_cast<float>(kMiddleGrey / std::max(mean, 0.02)) * std::exp2(look_.stops);
+  }
+
   void vignette_and_glare() {
+    const float gain = exposure();
     const float middle_row = 0.5F * static_cast<float>(size_.height);
     const float middle_column = 0.5F * static_cast<float>(size_.width);
     const float radius = std::min(middle_row, middle_column);
@@ -59,7 +76,7 @@ class Drawing {
         }
         const float u = (static_cast<float>(row) - middle_row) / radius;
         const float v = (static_cast<float>(column) - middle_column) / radius;
-        colour = colour * (look_.exposure * (1 - look_.vignetting * std::min(1.0F, u * u + v * v)));
+        colour = colour * (gain * (1 - look_.vignetting * std::min(1.0F, u * u + v * v)));
         if (look_.glare <= 0) continue;
         const Ray ray = caster_.ray(d.x, d.y, d.z, 0);
         const float towards =
@@ -75,14 +92,12 @@ class Drawing {
   // Three-tap passes whose variances add up to the blur's.
   void blur() {
     const float variance = look_.blur_px * look_.blur_px;
-    const int passes = static_cast<int>(std::ceil(variance / 0.5F));
     if (variance < 0.02F) return;
+    const int passes = static_cast<int>(std::ceil(variance / 0.5F));
     const float side = variance / (2 * static_cast<float>(passes));
     for (int pass = 0; pass < passes; ++pass) {
-      for (int row = 0; row < size_.height; ++row) filter(index(row, 0), 1, size_.width, side);
-      for (int column = 0; column < size_.width; ++column) {
-        filter(index(0, column), size_.width, size_.height, side);
-      }
+      blur_rows(side);
+      blur_columns(side);
     }
   }
 
@@ -91,16 +106,14 @@ class Drawing {
     picture.rgb.resize(colours_.size() * 3);
     const std::vector<float> curve = tone_curve();
     std::uint8_t* out = picture.rgb.data();
-    for (std::size_t i = 0; i < colours_.size(); ++i) {
-      for (const float light : {colours_[i].r, colours_[i].g, colours_[i].b}) {
-        const float clipped = std::clamp(light, 0.0F, 1.0F) * static_cast<float>(curve.size() - 2);
-        const auto k = static_cast<std::size_t>(clipped);
-        const float grey = mix(curve[k], curve[k + 1], clipped - static_cast<float>(k));
-        const std::uint32_t bits =
-            hash(static_cast<std::uint32_t>(i),
-                 static_cast<std::uint32_t>(out - picture.rgb.data()) % 3, seed);
-        *out++ =
-            static_cast<std::uint8_t>(std::clamp(grey + noise_at(grey, bits) + 0.5F, 0.0F, 255.0F));
+    for (std::uint32_t i = 0; i < colours_.size(); ++i) {
+      const std::array<float, 3> light = {colours_[i].r, colours_[i].g, colours_[i].b};
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const float place = std::clamp(light[k], 0.0F, 1.0F) * static_cast<float>(curve.size() - 2);
+        const auto step = static_cast<std::size_t>(place);
+        const float grey = mix(curve[step], curve[step + 1], place - static_cast<float>(step));
+        const float noisy = grey + noise_at(grey, hash(i, k, seed));
+        *out++ = static_cast<std::uint8_t>(std::clamp(noisy + 0.5F, 0.0F, 255.0F));
       }
     }
     return picture;
@@ -113,12 +126,17 @@ class Drawing {
     return static_cast<std::size_t>(row) * size_.width + column;
   }
 
+  // Leaves fade out by themselves.
   bool on_edge(int row, int column) const {
     const int here = surfaces_[index(row, column)];
-    return (row > 0 && surfaces_[index(row - 1, column)] != here) ||
-           (column > 0 && surfaces_[index(row, column - 1)] != here) ||
-           (row + 1 < size_.height && surfaces_[index(row + 1, column)] != here) ||
-           (column + 1 < size_.width && surfaces_[index(row, column + 1)] != here);
+    const auto differs = [&](int r, int c) {
+      const int there = surfaces_[index(r, c)];
+      return there != here && there >= 0 && (here != kLeaves || there >= kFirstColumn) &&
+             (there != kLeaves || here >= kFirstColumn);
+    };
+    return (row > 0 && differs(row - 1, column)) || (column > 0 && differs(row, column - 1)) ||
+           (row + 1 < size_.height && differs(row + 1, column)) ||
+           (column + 1 < size_.width && differs(row, column + 1));
   }
 
   Colour averaged(int row, int column) const {
@@ -152,14 +170,28 @@ class Drawing {
            near(row, column - 1) || near(row, column + 1);
   }
 
-  void filter(std::size_t first, int step, int count, float side) {
-    Colour before = colours_[first];
-    for (int i = 0; i < count; ++i) {
-      Colour& here = colours_[first + static_cast<std::size_t>(i) * step];
-      const Colour after = i + 1 < count ? (&here)[step] : here;
-      const Colour own = here;
-      here = own * (1 - 2 * side) + (before + after) * side;
-      before = own;
+  void blur_rows(float side) {
+    for (int row = 0; row < size_.height; ++row) {
+      Colour* const line = colours_.data() + index(row, 0);
+      Colour before = line[0];
+      for (int i = 0; i + 1 < size_.width; ++i) {
+        const Colour own = line[i];
+        line[i] = own * (1 - 2 * side) + (before + line[i + 1]) * side;
+        before = own;
+      }
+    }
+  }
+
+  void blur_columns(float side) {
+    std::vector<Colour> above(colours_.begin(), colours_.begin() + size_.width);
+    for (int row = 0; row + 1 < size_.height; ++row) {
+      Colour* const line = colours_.data() + index(row, 0);
+      const Colour* const below = line + size_.width;
+      for (int i = 0; i < size_.width; ++i) {
+        const Colour own = line[i];
+        line[i] = own * (1 - 2 * side) + (above[i] + below[i]) * side;
+        above[i] = own;
+      }
     }
   }
 

@@ -8,17 +8,18 @@ namespace {
 
 constexpr float kSkyLight = 0.5F;  // of an open sky on level ground, beside the sun's strength
 
+// Furrows are narrow and dark, ridges broad: the value of the noise's magnitude.
 Colour bark(const Bark& b, float x, float y, float along, float footprint, std::uint32_t seed) {
-  const float fine = b.scale, coarse = b.scale * 0.3F;
-  float ridge = 0;
-  ridge +=
-      0.6F * resolved(fine, footprint) * noise(x * fine, y * fine, along * fine / b.stretch, seed);
-  ridge += 0.4F * resolved(coarse, footprint) *
-           noise(x * coarse, y * coarse, along * coarse / b.stretch, seed + 1);
-  const float slow = noise(x * 2, y * 2, along * 0.6F, seed + 2);
-  return mix(b.dark, b.light,
-             std::clamp(0.5F + b.contrast * 0.9F * ridge + 0.15F * slow, 0.0F, 1.0F)) *
-         (1 + 0.2F * b.contrast * slow);
+  float ridge = 0, strength = 0.55F, scale = b.scale;
+  for (std::uint32_t octave = 0; octave < 3; ++octave, scale *= 0.4F, strength *= 0.8F) {
+    const float left = resolved(scale, footprint);
+    if (left <= 0) continue;
+    const float wave = noise(x * scale, y * scale, along * scale / b.stretch, seed + octave);
+    ridge += left * strength * (1.6F * std::sqrt(std::abs(wave)) - 0.8F);
+  }
+  const float slow = noise((x + y) * 2, along * 0.6F, seed + 7);
+  return mix(b.dark, b.light, std::clamp(0.55F + b.contrast * ridge, 0.0F, 1.0F)) *
+         (1 + 0.25F * slow);
 }
 
 }  // namespace
@@ -50,10 +51,11 @@ Colour Surfaces::column(const Column& c, int index, const Hit& hit, const Ray& r
   Colour skin = bark(b, hit.nx * r, hit.ny * r, hit.v, at.footprint, c.seed);
   if (hit.nz > 0) skin = b.light * 1.3F;
   if (b.birch) {
-    const float bars = noise((hit.nx + hit.ny) * 2, hit.v * 9, c.seed + 5) +
-                       0.5F * noise(hit.nx * 5, hit.ny * 5, hit.v * 25, c.seed + 6);
+    // Scars: wide around the trunk, low along it.
+    const float bars = noise(hit.nx * 1.7F, hit.ny * 1.7F, hit.v * 7, c.seed + 5) +
+                       0.8F * noise(hit.nx * r * 14, hit.ny * r * 14, hit.v * 40, c.seed + 6);
     skin = mix(skin, Colour{0.05F, 0.045F, 0.04F},
-               smooth_step(0.5F, 0.7F, bars) * resolved(5, at.footprint));
+               smooth_step(0.65F, 0.85F, bars) * (0.3F + 0.7F * resolved(12, at.footprint)));
   }
   if (b.moss > 0) {
     const float grown =
@@ -72,7 +74,7 @@ Colour Surfaces::boulder(const Boulder& b, const Hit& hit, const Ray& ray) const
   const float grain =
       fractal(at.x + at.z * 0.7F, at.y - at.z * 0.6F, 3, 4, 0.6F, at.footprint, b.seed);
   const float moss = smooth_step(0.3F, 0.6F, hit.nz + 0.6F * grain) * b.roughness;
-  const Colour skin = mix(b.colour * (1 + 0.7F * b.roughness * grain), look_.moss, 0.6F * moss);
+  const Colour skin = mix(b.colour * std::exp(1.2F * b.roughness * grain), look_.moss, 0.6F * moss);
   return through_air(lit(skin, hit, at, -1) * (0.75F + 0.25F * hit.nz), hit.way, ray);
 }
 
@@ -91,12 +93,12 @@ Colour Surfaces::wall(const Wall& w, const Hit& hit, const Ray& ray) const {
     skin = skin * (1 + 0.35F * noise(hit.u * 3, std::floor(course + 0.5F), w.seed)) *
            mix(1.0F, 0.6F + 0.4F * smooth_step(0.03F, 0.1F, joint), resolved(6, at.footprint));
   } else if (w.kind == Wall::Kind::hedge) {
-    skin = skin * (1 + 0.9F * fractal(hit.u, hit.v, 6, 4, 0.8F, at.footprint, w.seed));
+    skin = skin * std::exp(1.4F * fractal(hit.u, hit.v, 5, 4, 0.9F, at.footprint, w.seed));
   } else {
     const float cracks = fractal(hit.u * 0.8F, hit.v * 1.7F, 0.7F, 5, 0.65F, at.footprint, w.seed);
-    skin = skin * (0.75F + 0.9F * cracks);
+    skin = skin * std::exp(1.6F * cracks);
   }
-  const float grain = 1 + 0.2F * fractal(hit.u, hit.v, 20, 2, 0.6F, at.footprint, w.seed + 9);
+  const float grain = 1 + 0.3F * fractal(hit.u, hit.v, 20, 2, 0.6F, at.footprint, w.seed + 9);
   return through_air(lit(skin * std::max(0.1F, grain), hit, at, -1), hit.way, ray);
 }
 
@@ -116,8 +118,8 @@ float Surfaces::opacity(const Leaves& l, const Hit& hit, const Ray& ray) {
   const float inside = 1 - hit.u * hit.u - hit.v * hit.v;
   if (inside <= 0) return 0;
   const float frequency = 1 / l.leaf;
-  const float leaf = fractal(across, up, frequency * 0.25F, 3, 0.9F, footprint, l.seed);
-  const float filled = leaf + 1.6F * l.density - 1.2F + 0.8F * std::min(inside, 0.6F);
+  const float leaf = fractal(across, up, frequency * 0.12F, 4, 0.95F, footprint, l.seed);
+  const float filled = leaf + 1.6F * l.density - 1.3F + 0.8F * std::min(inside, 0.6F);
   const float soft = 0.08F + 0.3F * (1 - resolved(frequency, footprint));
   return smooth_step(-soft, soft, filled);
 }
@@ -125,27 +127,29 @@ float Surfaces::opacity(const Leaves& l, const Hit& hit, const Ray& ray) {
 Colour Surfaces::leaves(const Leaves& l, const Hit& hit, const Ray& ray) const {
   const Place at = place(hit.way, ray);
   const float across = hit.u * l.half_width, up = hit.v * l.height;
-  const float shade = fractal(across, up, 0.6F / l.leaf, 3, 0.8F, at.footprint, l.seed + 11);
-  const float deep = l.blades ? 0.55F + 0.45F * hit.v : 0.8F + 0.3F * hit.v;
+  const float shade = fractal(across, up, 0.4F / l.leaf, 3, 0.9F, at.footprint, l.seed + 11);
+  const float deep = l.blades ? 0.45F + 0.55F * hit.v : 0.75F + 0.35F * hit.v;
   // Leaves let light through: they are lit from every side.
-  return through_air(lit(l.colour * std::max(0.15F, (1 + 0.6F * shade) * deep), hit, at, -1),
-                     hit.way, ray);
+  return through_air(lit(l.colour * (std::exp(1.3F * shade) * deep), hit, at, -1), hit.way, ray);
 }
 
 Colour Surfaces::ground(float way, const Ray& ray) const {
   const Place at = place(way, ray);
-  const float steep = std::max(0.05F, std::abs(ray.tangent));
-  const float footprint = at.footprint * std::min(4.0F, 0.5F + 0.5F / steep);
+  // A pixel spans more of the ground the flatter the view.
+  const float steep = std::max(0.1F, std::abs(ray.tangent));
+  const float footprint = at.footprint * (0.5F + 0.5F / steep) * 0.6F;
   const std::uint32_t seed = world_.seed;
-  const float patch = fractal(at.x, at.y, look_.patch_scale, 3, 0.55F, footprint, seed + 1);
   const float path = fractal(at.x, at.y, look_.patch_scale * 0.5F, 2, 0.5F, footprint, seed + 31);
-  Colour skin = mix(look_.litter, look_.soil, smooth_step(0.05F, 0.5F, path));
-  const float fine = fractal(at.x, at.y, look_.litter_scale, 3, 0.85F, footprint, seed + 51);
+  const float patch = fractal(at.x, at.y, look_.patch_scale, 3, 0.7F, footprint, seed + 1);
+  const float fine = fractal(at.x, at.y, look_.litter_scale, 3, 0.9F, footprint, seed + 51);
   const float blotch =
-      fractal(at.x, at.y, look_.litter_scale * 0.2F, 2, 0.7F, footprint, seed + 61);
-  skin = skin * std::max(0.12F, 1 + look_.litter_contrast * (0.9F * fine + 0.5F * blotch));
-  const float green = patch + 0.25F * fine - 0.5F + look_.patches + 0.6F * look_.grass;
-  skin = mix(skin, look_.moss * std::max(0.2F, 1 + 0.6F * fine), smooth_step(-0.12F, 0.12F, green));
+      fractal(at.x, at.y, look_.litter_scale * 0.15F, 2, 0.8F, footprint, seed + 61);
+  Colour skin = mix(look_.litter, look_.soil, smooth_step(0.1F, 0.4F, path + 0.3F * blotch));
+  skin = skin * std::exp(look_.litter_contrast * (1.4F * fine + 0.9F * blotch));
+  const float green =
+      patch + 0.3F * fine + 0.3F * blotch - 0.5F + look_.patches + 0.6F * look_.grass;
+  const Colour grown = look_.moss * std::exp(1.2F * fine - 0.5F * blotch);
+  skin = mix(skin, grown, smooth_step(-0.12F, 0.12F, green));
   return through_air(lit(skin, Hit{way, 0, 0, 1, 0, 0}, at, -1), way, ray);
 }
 
@@ -174,31 +178,41 @@ float Surfaces::stems(float bearing, const Ray& ray, Colour& colour) const {
   return covered;
 }
 
+Colour Surfaces::sky(const Ray& ray, float height) const {
+  const float clouds =
+      fractal(ray.dx * 2, ray.dy * 2 + ray.tangent, 1.2F, 3, 0.6F, 0, world_.seed + 201);
+  const Colour clear = mix(look_.sky_low, look_.sky_high, std::clamp(height * 1.4F, 0.0F, 1.0F));
+  return mix(clear, look_.sky_low * 1.1F, smooth_step(-0.1F, 0.5F, clouds));
+}
+
 Colour Surfaces::backdrop(const Ray& ray) const {
   const float t = ray.tangent, height = t / std::sqrt(1 + t * t);
   const std::uint32_t seed = world_.seed;
-  const float px = 1.6F * ray.pixel;
-  const float clouds = fractal(ray.dx * 2, ray.dy * 2 + t, 1.2F, 4, 0.55F, px, seed + 201);
-  Colour sky = mix(look_.sky_low, look_.sky_high, std::clamp(height * 1.4F, 0.0F, 1.0F));
-  sky = mix(sky, look_.sky_low * 1.1F, smooth_step(-0.1F, 0.5F, clouds));
-
   const float profile = look_.backdrop_top * (1 + 0.5F * noise(ray.dx * 4, ray.dy * 4, seed + 202) +
                                               0.2F * noise(ray.dx * 21, ray.dy * 21, seed + 203));
-  if (t > profile * 1.3F + 0.05F) return sky;
+  if (t > profile * 1.3F + 0.05F) return sky(ray, height);
+  const float pixel = ray.pixel;
   const float bearing = std::atan2(ray.dy, ray.dx);
-  const float twigs = fractal(bearing * 6, t * 6, 1, 5, 0.75F, px * 6, seed + 204);
-  const float low = 1 - std::clamp(t / (profile + 0.01F), 0.0F, 1.0F);
+  const float boughs = fractal(bearing, t, 5, 5, 0.8F, pixel, seed + 204);
+  const float leaves = fractal(bearing, t, 19, 3, 0.9F, pixel, seed + 205);
+  const float up = std::clamp(t / (profile + 0.01F), 0.0F, 1.0F);
+  const float closed = boughs + 1.5F * look_.backdrop_cover - 1.0F + 0.7F * (1 - up);
   const float cover =
-      smooth_step(-0.15F, 0.15F, twigs + 1.6F * look_.backdrop_cover - 1.1F + 1.1F * low) *
-      smooth_step(profile * 1.2F + 0.01F, profile, t);
-  const float shade = fractal(bearing * 14, t * 14, 1, 4, 0.8F, px * 14, seed + 205);
-  Colour colour = mix(sky, look_.foliage * std::max(0.2F, 0.7F + 0.9F * shade), cover);
-  if (look_.stems > 0 && t > -0.1F) stems(bearing, ray, colour);
-  // Leaves hang before some of the stems.
-  const float front =
-      smooth_step(0.1F, 0.3F, twigs - 0.1F + 0.5F * shade) * smooth_step(profile, 0, t);
-  colour = mix(colour, look_.foliage * std::max(0.2F, 0.9F + 0.9F * shade), 0.85F * front);
-  return mix(look_.haze, colour, std::exp(-look_.fog * 60 * (1 - 0.6F * std::max(0.0F, height))));
+      smooth_step(-0.2F, 0.2F, closed) * smooth_step(profile * 1.2F + 0.01F, profile, t);
+  // Clumps in the sun before gaps that no light reaches.
+  const float sunlit = smooth_step(-0.05F, 0.5F, boughs + 0.4F * leaves);
+  const float light = (0.5F + look_.sun_strength * 0.7F * sunlit) * mix(look_.interior, 1.0F, up) *
+                      std::exp(1.3F * leaves + 0.6F * boughs);
+  const Colour crowns = look_.foliage * light;
+  Colour colour = cover < 1 ? mix(sky(ray, height), crowns, cover) : crowns;
+  // Leaves hang before most of the stems.
+  const float front = smooth_step(-0.1F, 0.25F, leaves - boughs + look_.veil);
+  if (look_.stems > 0 && t > -0.1F && front < 1) {
+    Colour behind = colour;
+    stems(bearing, ray, behind);
+    colour = mix(behind, colour, front);
+  }
+  return mix(look_.haze, colour, std::exp(-look_.fog * 45 * (1 - 0.6F * std::max(0.0F, height))));
 }
 
 }  // namespace bole::simulate

@@ -33,6 +33,7 @@ class Surfaces {
   Place place(float way, const Ray& ray) const;
   Colour lit(Colour reflectance, const Hit& hit, const Place& at, int self) const;
   Colour through_air(Colour colour, float way, const Ray& ray) const;
+  Colour sky(const Ray& ray, float height) const;
   float stems(float bearing, const Ray& ray, Colour& colour) const;
 
   const World& world_;

@@ -249,12 +249,12 @@ Sight View::trace(const Ray& ray) const {
     sight.colour = sight.colour + behind * left;
   }
   if (left < 0.5F) {
-    sight.surface = 2;
+    sight.surface = kLeaves;
   } else if (solid == nullptr) {
     sight.surface = end < kFar ? kGround : kBackdrop;
   } else {
     sight.surface = solid->kind == Kind::column ? kFirstColumn + solid->index
-                                                : 2 + static_cast<int>(solid->kind);
+                                                : kLeaves + static_cast<int>(solid->kind);
   }
   return sight;
 }

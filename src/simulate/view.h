@@ -16,6 +16,7 @@ struct Sight {
 
 inline constexpr int kBackdrop = 0;
 inline constexpr int kGround = 1;
+inline constexpr int kLeaves = 2;
 inline constexpr int kFirstColumn = 16;  ///< surface of columns[i] is kFirstColumn + i
 
 /// A world seen from one viewpoint. Everything is sorted by bearing, then by distance, so that a

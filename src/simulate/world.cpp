@@ -71,7 +71,10 @@ class Gardener {
   // One tree at most in each cell of a grid, somewhere in the cell; closer in some parts than in
   // others.
   void plant_trees() {
-    const float per_ha = draw(random_, options_.trees_per_ha);
+    // Evenly over the logarithm: open and dense woods alike.
+    const float per_ha =
+        options_.trees_per_ha.low *
+        std::pow(options_.trees_per_ha.high / options_.trees_per_ha.low, random_.uniform(0, 1));
     const float bright = draw(random_, options_.bright_share);
     const float cover = draw(random_, options_.foot_cover);
     const float thickest = random_.uniform(
@@ -167,12 +170,12 @@ class Gardener {
   void grow_bushes() {
     const int bushes = static_cast<int>(draw(random_, options_.bushes_per_ha) * hectares());
     for (int i = 0; i < bushes; ++i) {
-      const float size = random_.uniform(0.2F, random_.chance(0.3F) ? 1.6F : 0.7F);
+      const float size = random_.uniform(0.15F, random_.chance(0.2F) ? 2 : 0.8F);
       float x = 0, y = 0;
       if (!find_place(size, x, y)) continue;
       add_bush(x, y, ground(x, y) + size * random_.uniform(0.3F, 0.9F), size);
     }
-    const int tufts = static_cast<int>(static_cast<float>(bushes) * random_.uniform(0, 3));
+    const int tufts = static_cast<int>(static_cast<float>(bushes) * random_.uniform(0.5F, 4));
     for (int i = 0; i < tufts; ++i) {
       float x = 0, y = 0;
       if (find_place(0, x, y)) add_tuft(x, y, random_.uniform(0.05F, 0.5F), random_.chance(0.6F));

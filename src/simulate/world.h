@@ -123,9 +123,11 @@ struct Look {
   float backdrop_top = 1, backdrop_cover = 0.6F;  ///< tangent where the crowns end; their closeness
   float stems = 0.4F;                             ///< share of the backdrop's bearings with a stem
   float stem_light = 0.3F;
+  float interior = 0.6F;  ///< light within the far wood, against that on its crowns
+  float veil = 0;         ///< how much of the far stems leaves hide, from -0.5 to 0.5
   Colour haze;
   float fog = 0, glare = 0;
-  float exposure = 1, contrast = 1, vignetting = 0.3F, blur_px = 0, noise = 2;
+  float stops = 0, contrast = 1, vignetting = 0.3F, blur_px = 0, noise = 2;
   int jpeg_quality = 100;
 };
 
