@@ -12,11 +12,16 @@ use zenoh::Config;
 use zenoh::config::EndPoint;
 
 use crate::ffi::{Problem, Settings, Switch};
+use crate::log::without_places;
 
 type Checked<T> = Result<T, Problem>;
 
 fn problem(key: &str, problem: impl ToString, remedy: impl ToString) -> Problem {
-    Problem { key: key.to_owned(), problem: problem.to_string(), remedy: remedy.to_string() }
+    Problem {
+        key: key.to_owned(),
+        problem: without_places(&problem.to_string()),
+        remedy: remedy.to_string(),
+    }
 }
 
 /// The configuration, and the typed settings that the configuration file contradicted.

@@ -64,7 +64,7 @@ impl Subscriber for Collector {
                 _ => return,
             }
         }
-        add(text);
+        add(without_places(&text));
     }
 
     fn new_span(&self, _: &Attributes<'_>) -> Id {
@@ -74,6 +74,21 @@ impl Subscriber for Collector {
     fn record_follows_from(&self, _: &Id, _: &Id) {}
     fn enter(&self, _: &Id) {}
     fn exit(&self, _: &Id) {}
+}
+
+/// zenoh's errors end in " at FILE.rs:LINE.", layer upon layer: nothing for an operator's log.
+pub fn without_places(text: &str) -> String {
+    let mut words = Vec::new();
+    for word in text.split(' ') {
+        match word.find(".rs:") {
+            Some(_) if words.last() == Some(&"at") => {
+                words.pop();
+                words.extend(word.ends_with(']').then_some("]"));
+            }
+            _ => words.push(word),
+        }
+    }
+    words.join(" ").replace(" ]", "]")
 }
 
 struct Text(String);

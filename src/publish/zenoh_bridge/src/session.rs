@@ -15,7 +15,7 @@ use zenoh::session::ZenohId;
 use zenoh::{Config, Wait};
 
 use crate::ffi::{Event, Message, Problem, Settings, State};
-use crate::{Error, config, guarded};
+use crate::{Error, config, guarded, log};
 
 /// Pause between two tries to open.
 const RETRY: Duration = Duration::from_millis(500);
@@ -236,7 +236,7 @@ impl Shared {
                     *opening = Opening::Done(open);
                     return;
                 }
-                Err(e) => *opening = Opening::Failed(e.to_string()),
+                Err(e) => *opening = Opening::Failed(log::without_places(&e.to_string())),
             }
             let waited = self
                 .ended
