@@ -1,17 +1,21 @@
 #include "warp/warp_rows.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <limits>
 
 // The kernels below are compiled once for each instruction set. Vectors of scalable length are left
 // out: source pixels come one by one whatever the length.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+#define HWY_WANT_AVX3_DL
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "warp/warp_rows.cpp"
 #include <hwy/foreach_target.h>  // must come before highway.h
 
 #include <hwy/highway.h>
+
+#include "warp/warp_window-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace bole::HWY_NAMESPACE {
@@ -72,6 +76,8 @@ HWY_INLINE hn::Vec<D> load_scattered(D d, const std::uint8_t* base, const std::u
 // Where among four bytes the samples of two neighbouring pixels stand: at kFirst and kSecond.
 template <int kFirst, int kSecond>
 struct Samples {
+  static constexpr int kPixelBytes = kSecond - kFirst;
+
   // The two as a pair of 16-bit numbers.
   static HWY_INLINE V32 pair(D32 d, V32 bytes) {
     if constexpr (kSecond - kFirst == 2) {
@@ -83,6 +89,11 @@ struct Samples {
     }
   }
 };
+
+using OneByte = Samples<0, 1>;
+using FirstOfTwo = Samples<0, 2>;
+using SecondOfTwo = Samples<1, 3>;
+using ThreeBytes = Samples<0, 3>;
 
 // (kWarpSteps - step, step), for the two neighbours that a sample lies between.
 HWY_INLINE V32 weights(D32 d, V32 step) {
@@ -97,7 +108,8 @@ HWY_INLINE V32 interpolate(D32 d, V32 entry, V32 top, V32 bottom) {
   const V32 above = multiply_add_pairs(d, Layout::pair(d, top), across);
   const V32 below = multiply_add_pairs(d, Layout::pair(d, bottom), across);
   const V32 sum = multiply_add_pairs(d, hn::Or(above, hn::ShiftLeft<16>(below)), down);
-  return hn::ShiftRight<2 * kWarpBits>(hn::Add(sum, hn::Set(d, 1 << (2 * kWarpBits - 1))));
+  const V32 half = hn::Set(d, kWarpSteps / 2);
+  return hn::ShiftRight<kWarpBits>(hn::Add(hn::ShiftRight<kWarpBits>(hn::Add(sum, half)), half));
 }
 
 // `base`: the byte from which the tile's entries count.
@@ -144,6 +156,15 @@ void warp_tiles(const WarpStrip& strip, std::size_t lead) {
   const WarpEntry* const entries = strip.table.entries().data() + first * kTilePixels;
   const auto* const bytes = reinterpret_cast<const std::uint8_t*>(strip.image.bytes.data());
   for (int t = 0; t < count; ++t) {
+#if HWY_TARGET == HWY_AVX3_DL
+    if constexpr (Layout::kPixelBytes <= 2) {
+      const std::size_t number = first + static_cast<std::size_t>(t);
+      if (!strip.windows.empty() && strip.windows.tile(number).fits) {
+        warp_tile_by_windows<Layout::kPixelBytes>(strip, number, t);
+        continue;
+      }
+    }
+#endif
     if (!readable(tiles[t], strip.image, lead)) {
       warp_tile_plain(strip, t);
       continue;
@@ -159,16 +180,18 @@ void warp_tiles(const WarpStrip& strip, std::size_t lead) {
 void warp_strip(const WarpStrip& strip) {
   switch (strip.image.pixel_bytes) {
     case 1:
-      return warp_tiles<Samples<0, 1> >(strip, static_cast<std::size_t>(strip.image.lead));
+      return warp_tiles<OneByte>(strip, static_cast<std::size_t>(strip.image.lead));
     case 2:
-      return strip.image.lead == 0 ? warp_tiles<Samples<0, 2> >(strip, 0)
-                                   : warp_tiles<Samples<1, 3> >(strip, 0);
+      return strip.image.lead == 0 ? warp_tiles<FirstOfTwo>(strip, 0)
+                                   : warp_tiles<SecondOfTwo>(strip, 0);
     default:
-      return warp_tiles<Samples<0, 3> >(strip, static_cast<std::size_t>(strip.image.lead));
+      return warp_tiles<ThreeBytes>(strip, static_cast<std::size_t>(strip.image.lead));
   }
 }
 
 #endif  // HWY_TARGET
+
+bool uses_windows() { return HWY_TARGET == HWY_AVX3_DL; }
 
 }  // namespace
 }  // namespace bole::HWY_NAMESPACE
@@ -179,16 +202,18 @@ namespace bole {
 namespace {
 
 HWY_EXPORT(warp_strip);
+HWY_EXPORT(uses_windows);
 
 void warp_strip_plain(const WarpStrip& strip) {
   for (int tile = 0; tile < strip.table.tiles_per_strip(); ++tile) warp_tile_plain(strip, tile);
 }
 
 template <class Kernel>
-void warp_with(Kernel kernel, const WarpTable& table, const SampledImage& image, int first,
-               int last, WarpOutput out) {
+void warp_with(Kernel kernel, const WarpTable& table, const WarpWindows& windows,
+               const SampledImage& image, int first, int last, WarpOutput out) {
   for (int row = first; row < last; row += kTileRows) {
-    const WarpStrip strip{table, image, row / kTileRows, std::min(kTileRows, last - row), out};
+    const WarpStrip strip{table, windows, image, row / kTileRows, std::min(kTileRows, last - row),
+                          out};
     kernel(strip);
     warp_strays(strip);
     out.pixels += static_cast<std::ptrdiff_t>(kTileRows) * out.stride;
@@ -199,16 +224,18 @@ void warp_with(Kernel kernel, const WarpTable& table, const SampledImage& image,
 
 void warp_rows_plain(const WarpTable& table, const SampledImage& image, int first, int last,
                      WarpOutput out) {
-  warp_with(warp_strip_plain, table, image, first, last, out);
+  warp_with(warp_strip_plain, table, {}, image, first, last, out);
 }
 
-void warp_rows(const WarpTable& table, const SampledImage& image, int first, int last,
-               WarpOutput out) {
+bool warp_uses_windows() { return HWY_DYNAMIC_DISPATCH(uses_windows)(); }
+
+void warp_rows(const WarpTable& table, const WarpWindows& windows, const SampledImage& image,
+               int first, int last, WarpOutput out) {
   // The kernels multiply by the stride in 16 bits; wider images are rare enough to be slow.
   if (image.stride > std::numeric_limits<std::int16_t>::max()) {
     return warp_rows_plain(table, image, first, last, out);
   }
-  warp_with(HWY_DYNAMIC_DISPATCH(warp_strip), table, image, first, last, out);
+  warp_with(HWY_DYNAMIC_DISPATCH(warp_strip), table, windows, image, first, last, out);
 }
 
 }  // namespace bole

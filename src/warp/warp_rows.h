@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "warp/warp_table.h"
+#include "warp/warp_windows.h"
 
 namespace bole {
 
@@ -24,11 +25,16 @@ struct WarpOutput {
 
 /// Un-warps rows [first, last); first is a multiple of kTileRows. The image has the table's size.
 ///
-/// With p the four source samples of a pixel and u, v its position among them in steps:
-/// ((64 - v) ((64 - u) p00 + u p01) + v ((64 - u) p10 + u p11) + 2048) >> 12, bilinear
-/// interpolation rounded once. All kernels give equal bytes.
-void warp_rows(const WarpTable& table, const SampledImage& image, int first, int last,
-               WarpOutput out);
+/// With p the four source samples of a pixel, u, v its position among them in steps and
+/// s = (64 - v) ((64 - u) p00 + u p01) + v ((64 - u) p10 + u p11), bilinear interpolation times
+/// 2^12:
+/// (((s + 32) >> 6) + 32) >> 6. All kernels give equal bytes. `windows` are the table's own or
+/// none; they are worth having where warp_uses_windows().
+void warp_rows(const WarpTable& table, const WarpWindows& windows, const SampledImage& image,
+               int first, int last, WarpOutput out);
+
+/// Whether this processor has use for WarpWindows.
+bool warp_uses_windows();
 
 /// The same, one pixel after the other: what warp_rows is checked against.
 void warp_rows_plain(const WarpTable& table, const SampledImage& image, int first, int last,
@@ -37,6 +43,7 @@ void warp_rows_plain(const WarpTable& table, const SampledImage& image, int firs
 /// The parts of one strip, for the kernels.
 struct WarpStrip {
   const WarpTable& table;
+  const WarpWindows& windows;
   const SampledImage& image;
   int strip;       ///< the panorama's rows from strip * kTileRows on
   int rows;        ///< how many of them, at most kTileRows

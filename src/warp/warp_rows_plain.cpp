@@ -20,9 +20,9 @@ std::uint8_t interpolate(const SampledImage& image, const Source& source) {
   const unsigned u = source.column_step, v = source.row_step;
   const unsigned top = (kWarpSteps - u) * sample(0, 0) + u * sample(0, 1);
   const unsigned bottom = (kWarpSteps - u) * sample(1, 0) + u * sample(1, 1);
-  constexpr unsigned kHalf = 1u << (2 * kWarpBits - 1);
-  return static_cast<std::uint8_t>(((kWarpSteps - v) * top + v * bottom + kHalf) >>
-                                   (2 * kWarpBits));
+  const unsigned sum = (kWarpSteps - v) * top + v * bottom;
+  constexpr unsigned kHalf = kWarpSteps / 2;
+  return static_cast<std::uint8_t>((((sum + kHalf) >> kWarpBits) + kHalf) >> kWarpBits);
 }
 
 Source source_of(const WarpTile& tile, WarpEntry entry) {

@@ -41,6 +41,9 @@ bool holds_all_rows(const ImageView& image) {
 
 }  // namespace
 
+Warper::Warper(const WarpTable& table)
+    : table_(table), windows_(warp_uses_windows() ? WarpWindows(table) : WarpWindows()) {}
+
 SampledImage Warper::open(const ImageView& image) {
   if (image.format == PixelFormat::mjpeg) {
     const ImageView luma = decoder_.decode(image.planes[0].bytes, table_.image_size());

@@ -19,7 +19,7 @@ namespace bole {
 /// frame of a format.
 class Warper {
  public:
-  explicit Warper(const WarpTable& table) : table_(table) {}
+  explicit Warper(const WarpTable& table);
 
   const PanoramaGeometry& geometry() const { return table_.panorama(); }
 
@@ -33,12 +33,13 @@ class Warper {
   /// Un-warps rows [first, last) of an opened image; `first` is a multiple of kTileRows. Writes
   /// padded_width() bytes a row.
   void warp_rows(const SampledImage& image, int first, int last, WarpOutput out) const {
-    bole::warp_rows(table_, image, first, last, out);
+    bole::warp_rows(table_, windows_, image, first, last, out);
   }
   int padded_width() const { return table_.padded_width(); }
 
  private:
   const WarpTable& table_;
+  WarpWindows windows_;
   LumaDecoder decoder_;
   std::vector<std::uint8_t> green_;
   std::vector<std::uint8_t> panorama_;

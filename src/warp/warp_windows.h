@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "warp/warp_table.h"
+
+namespace bole {
+
+/// The sources of half a tile, eight by eight panorama pixels, that lie in a window of 16 x 16
+/// source pixels. A processor that can look bytes up in 256 of them at once (see warp_rows.cpp)
+/// reads the window once and picks all pixels out of it.
+struct alignas(64) WarpWindow {
+  static constexpr int kSide = 16;    ///< of the window, source pixels
+  static constexpr int kColumns = 8;  ///< of the half tile
+  static constexpr int kPixels = kTileRows * kColumns;
+
+  /// Of each pixel, row by row: the first of its four source samples, 16 row + column within the
+  /// window, and how far from it the source lies, in steps.
+  std::array<std::uint8_t, kPixels> place, column_step, row_step;
+};
+
+/// A table's tiles as windows, where both halves of a tile fit in one each. It takes three quarters
+/// of the bytes of the table's own entries.
+class WarpWindows {
+ public:
+  /// None.
+  WarpWindows() = default;
+  explicit WarpWindows(const WarpTable& table);
+
+  struct Origin {
+    std::uint16_t row, column;
+  };
+  struct Tile {
+    bool fits = false;
+    std::array<Origin, 2> origins{};  ///< of the windows, left half first
+  };
+
+  bool empty() const { return tiles_.empty(); }
+  const Tile& tile(std::size_t number) const { return tiles_[number]; }
+  /// The two windows of a tile that fits.
+  const WarpWindow* windows(std::size_t number) const { return &windows_[2 * number]; }
+
+ private:
+  std::vector<Tile> tiles_;
+  std::vector<WarpWindow> windows_;
+};
+
+}  // namespace bole
