@@ -1,0 +1,38 @@
+"""bolectl listen against boled, and against those who misuse our channels."""
+
+import json
+import subprocess
+import time
+
+import lcm
+
+
+def test_listen_counts_lists_and_losses(programs, drive, lcm_url):
+    command = [programs / "bolectl", "listen", "--lcm", lcm_url, "--count", "20", "--json"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as listener:
+        time.sleep(0.5)
+        subprocess.run([programs / "boled", "--camera", drive / "camera.toml", "--source",
+                        f"replay:{drive}", "--publish", "lcm", "--set", f"lcm.url={lcm_url}"],
+                       check=True, stderr=subprocess.DEVNULL)
+        text, _ = listener.communicate(timeout=20)
+    lines = [json.loads(line) for line in text.splitlines()]
+    summary = lines[-1]["summary"]
+    assert (summary["lists"], summary["lost"], summary["foreign"]) == (20, 0, 0)
+    assert sum("trees" in line for line in lines) == 20
+    assert any(line.get("state") == 2 for line in lines)
+
+
+def test_listen_survives_and_names_foreign_payloads(programs, types, lcm_url):
+    command = [programs / "bolectl", "listen", "--lcm", lcm_url, "--count", "1", "--json"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          text=True) as listener:
+        time.sleep(0.5)
+        bus = lcm.LCM(lcm_url)
+        bus.publish("BOLE_TREES", b"")
+        bus.publish("BOLE_TREES", types.status_t().encode())
+        bus.publish("BOLE_STATUS", b"\xff" * 100)
+        bus.publish("BOLE_TREES", types.tree_list_t().encode())
+        text, log = listener.communicate(timeout=20)
+    assert listener.returncode == 0
+    assert json.loads(text.splitlines()[-1])["summary"]["foreign"] == 3
+    assert "is cut off" in log and "fingerprint" in log

@@ -1,0 +1,99 @@
+"""boled over a rendered drive: what comes out, and that others read the same."""
+
+import json
+import subprocess
+import time
+
+import lcm
+import pytest
+
+
+def lists(text):
+    return [json.loads(line) for line in text.splitlines()]
+
+
+def test_lockstep_is_byte_identical_over_ten_runs(boled):
+    runs = {boled("--pace", "lockstep", "--publish", "jsonl:-").stdout for _ in range(10)}
+    assert len(runs) == 1
+    (text,) = runs
+    found = lists(text)
+    assert [entry["seq"] for entry in found] == list(range(20))
+    assert all(entry["publish_mono_ns"] == entry["capture_mono_ns"] for entry in found)
+    assert sum(entry["num_trees"] for entry in found) > 0
+
+
+class Receiver:
+    """Keeps every list of a URL, read with the generated type alone."""
+
+    def __init__(self, url, types):
+        self.lcm = lcm.LCM(url)
+        self.payloads = []
+        subscription = self.lcm.subscribe("BOLE_TREES", lambda _, data: self.payloads.append(data))
+        subscription.set_queue_capacity(0)
+        self.types = types
+
+    def receive(self, count, seconds):
+        end = time.monotonic() + seconds
+        while len(self.payloads) < count and time.monotonic() < end:
+            self.lcm.handle_timeout(100)
+        return [self.types.tree_list_t.decode(data) for data in self.payloads]
+
+
+def same(message, line):
+    fields = set(line) - {"file", "trees"}
+    assert {name: getattr(message, name) for name in fields} == {name: line[name] for name in fields}
+    for tree, written in zip(message.trees, line["trees"], strict=True):
+        for name, value in written.items():
+            assert getattr(tree, name) == pytest.approx(value, rel=1e-6), name
+
+
+def test_realtime_publishes_every_frame_on_lcm_as_jsonl_has_it(
+    programs, drive, types, lcm_url, tmp_path
+):
+    receiver = Receiver(lcm_url, types)
+    written = tmp_path / "lists.jsonl"
+    command = [programs / "boled", "--camera", drive / "camera.toml", "--source", f"replay:{drive}",
+               "--pace", "realtime", "--publish", f"lcm,jsonl:{written}", "--set",
+               f"lcm.url={lcm_url}"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE) as daemon:
+        received = receiver.receive(20, 30)
+        assert daemon.wait(10) == 0
+    lines = lists(written.read_text())
+    assert len(lines) == len(received) == 20
+    for message, line in zip(received, lines):
+        same(message, line)
+
+
+def test_bad_file_is_named_and_the_others_go_on(boled, drive, tmp_path):
+    for file in drive.iterdir():
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    bad = sorted(tmp_path.glob("frame_*"))[7]
+    bad.write_bytes(bad.read_bytes()[:2000])
+    run = boled("--pace", "lockstep", "--publish", "jsonl:-", source=f"replay:{tmp_path}")
+    assert run.returncode == 0
+    found = lists(run.stdout)
+    assert len(found) == 19
+    assert bad.name not in [entry["file"] for entry in found]
+    assert bad.name in run.stderr
+    assert [entry["sensor_seq"] for entry in found] == [k for k in range(20) if k != 7]
+
+
+def test_without_a_multicast_route_the_error_is_clear_and_jsonl_goes_on(boled):
+    try:
+        subprocess.run(["unshare", "-n", "true"], check=True, capture_output=True)
+    except (OSError, subprocess.CalledProcessError):
+        pytest.skip("no network namespaces here")
+    run = boled("--pace", "lockstep", "--publish", "lcm,jsonl:-", prefix=["unshare", "-n"])
+    assert run.returncode == 0
+    assert len(lists(run.stdout)) == 20
+    assert run.stderr.count("no multicast route") == 1
+
+
+def test_a_reader_that_stops_does_not_keep_boled_from_ending(programs, drive):
+    command = [programs / "boled", "--camera", drive / "camera.toml", "--source", f"replay:{drive}",
+               "--pace", "fast", "--loop", "--publish", "jsonl:-"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as daemon:
+        daemon.stdout.readline()
+        time.sleep(1)  # the pipe fills
+        daemon.terminate()
+        assert daemon.wait(5) == 0
