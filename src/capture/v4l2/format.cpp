@@ -63,19 +63,21 @@ V4l2Format granted(const v4l2_format& driver) {
   if (is_multiplanar(format.type)) {
     const v4l2_pix_format_mplane& pix = driver.fmt.pix_mp;
     format.fourcc = pix.pixelformat;
-    format.size = {static_cast<int>(pix.width), static_cast<int>(pix.height)};
-    format.memory_planes = pix.num_planes;
+    format.layout.size = {static_cast<int>(pix.width), static_cast<int>(pix.height)};
+    format.layout.memory_planes = pix.num_planes;
     stride = static_cast<int>(pix.plane_fmt[0].bytesperline);
-    format.strides[1] = static_cast<int>(pix.plane_fmt[1].bytesperline);
+    format.layout.strides[1] = static_cast<int>(pix.plane_fmt[1].bytesperline);
   } else {
     const v4l2_pix_format& pix = driver.fmt.pix;
     format.fourcc = pix.pixelformat;
-    format.size = {static_cast<int>(pix.width), static_cast<int>(pix.height)};
+    format.layout.size = {static_cast<int>(pix.width), static_cast<int>(pix.height)};
     stride = static_cast<int>(pix.bytesperline);
   }
-  format.pixels = pixel_format_of(format.fourcc).value_or(PixelFormat::grey);
-  format.strides[0] = std::max(stride, packed_row_bytes(format.pixels, format.size.width));
-  if (format.memory_planes < 2 || format.strides[1] == 0) format.strides[1] = format.strides[0];
+  format.layout.pixels = pixel_format_of(format.fourcc).value_or(PixelFormat::grey);
+  format.layout.strides[0] =
+      std::max(stride, packed_row_bytes(format.layout.pixels, format.layout.size.width));
+  if (format.layout.memory_planes < 2 || format.layout.strides[1] == 0)
+    format.layout.strides[1] = format.layout.strides[0];
   return format;
 }
 
@@ -114,8 +116,8 @@ std::optional<V4l2Format> try_format(const V4l2Device& device, v4l2_buf_type typ
   const __u32 field = is_multiplanar(type) ? driver.fmt.pix_mp.field : driver.fmt.pix.field;
   const bool whole_frames =
       field == V4L2_FIELD_NONE || field == V4L2_FIELD_ANY || field == V4L2_FIELD_INTERLACED;
-  if (format.fourcc != fourcc || format.size != settings.size || !whole_frames) {
-    offered = "it offers " + fourcc_text(format.fourcc) + " " + shown(format.size) +
+  if (format.fourcc != fourcc || format.layout.size != settings.size || !whole_frames) {
+    offered = "it offers " + fourcc_text(format.fourcc) + " " + shown(format.layout.size) +
               (whole_frames ? "" : " in single fields");
     return std::nullopt;
   }
@@ -190,32 +192,6 @@ V4l2Format negotiate_format(const V4l2Device& device, const CameraSettings& sett
   best = try_format(device, type, best->fourcc, settings, offered);
   if (!best) throw CaptureError("does not keep to the format it has given");
   return *best;
-}
-
-std::optional<ImageView> view_buffer(const V4l2Format& format,
-                                     std::span<const std::span<const std::byte>> areas) {
-  ImageView view{format.pixels, format.size, {}};
-  if (format.pixels == PixelFormat::mjpeg) {
-    if (areas[0].empty()) return std::nullopt;
-    view.planes[0] = {areas[0], 0};
-    return view;
-  }
-  const auto row = static_cast<std::size_t>(packed_row_bytes(format.pixels, format.size.width));
-  // A plane's bytes, of which the last row need not be filled up to the stride.
-  const auto cut = [&](std::span<const std::byte> bytes, int stride, int rows) -> Plane {
-    const std::size_t least = static_cast<std::size_t>(stride) * static_cast<std::size_t>(rows - 1);
-    if (bytes.size() < least + row) return {};
-    return {bytes.first(std::min(bytes.size(), least + static_cast<std::size_t>(stride))), stride};
-  };
-  view.planes[0] = cut(areas[0], format.strides[0], format.size.height);
-  if (view.planes[0].stride == 0) return std::nullopt;
-  if (format.pixels == PixelFormat::nv12) {
-    const std::span<const std::byte> chroma =
-        format.memory_planes > 1 ? areas[1] : areas[0].subspan(view.planes[0].bytes.size());
-    view.planes[1] = cut(chroma, format.strides[1], format.size.height / 2);
-    if (view.planes[1].stride == 0) return std::nullopt;
-  }
-  return view;
 }
 
 }  // namespace bole

@@ -1,12 +1,11 @@
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "capture/buffer_layout.h"
 #include "capture/camera_settings.h"
 #include "capture/v4l2/device.h"
 
@@ -17,14 +16,11 @@ std::optional<PixelFormat> pixel_format_of(std::uint32_t fourcc);
 /// "YUYV"; unprintable characters as dots.
 std::string fourcc_text(std::uint32_t fourcc);
 
-/// How frames lie in a driver's buffers.
+/// What a driver and we have agreed on.
 struct V4l2Format {
   v4l2_buf_type type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
   std::uint32_t fourcc = 0;
-  PixelFormat pixels = PixelFormat::grey;
-  ImageSize size;
-  int memory_planes = 1;               ///< memory areas of a buffer; two for NV12M, else one
-  std::array<int, 2> strides;          ///< bytes from row to row of each image plane
+  BufferLayout layout;
   std::chrono::nanoseconds period{0};  ///< 0: the driver does not say
 };
 
@@ -35,9 +31,5 @@ V4l2Format negotiate_format(const V4l2Device& device, const CameraSettings& sett
 
 /// The formats of a device that we can read, as the driver lists them.
 std::vector<std::uint32_t> list_formats(const V4l2Device& device, v4l2_buf_type type);
-
-/// The filled part of each memory area of a buffer as an image; nullopt when it is too short.
-std::optional<ImageView> view_buffer(const V4l2Format& format,
-                                     std::span<const std::span<const std::byte>> areas);
 
 }  // namespace bole

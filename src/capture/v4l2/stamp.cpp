@@ -18,17 +18,4 @@ V4l2Stamp read_stamp(const v4l2_buffer& buffer, std::int64_t mono_ns, std::int64
   return read;
 }
 
-std::int64_t SequenceCount::extend(std::uint32_t sequence) {
-  constexpr std::uint32_t kHalf = 1U << 31;
-  const std::uint32_t step = sequence - last_;
-  if (!any_) {
-    extended_ = sequence;
-  } else {
-    extended_ += step < kHalf ? step : 1;  // a count that begins anew goes on as if it had not
-  }
-  any_ = true;
-  last_ = sequence;
-  return extended_;
-}
-
 }  // namespace bole

@@ -19,15 +19,4 @@ struct V4l2Stamp {
 /// and `utc_ns` are the clocks' readings when the buffer was fetched.
 V4l2Stamp read_stamp(const v4l2_buffer& buffer, std::int64_t mono_ns, std::int64_t utc_ns);
 
-/// A driver's 32-bit frame count as one that does not wrap round.
-class SequenceCount {
- public:
-  std::int64_t extend(std::uint32_t sequence);
-
- private:
-  bool any_ = false;
-  std::uint32_t last_ = 0;
-  std::int64_t extended_ = 0;
-};
-
 }  // namespace bole

@@ -27,7 +27,7 @@ int request(const V4l2Device& device, v4l2_buf_type type, int wanted, int& grant
 
 V4l2Buffers::V4l2Buffers(V4l2Device device, const V4l2Format& format, int wanted)
     : device_(std::move(device)), format_(format) {
-  if (format_.memory_planes > 2) throw CaptureError("spreads a frame over too many planes");
+  if (format_.layout.memory_planes > 2) throw CaptureError("spreads a frame over too many planes");
   int granted = 0;
   const int error = request(device_, format_.type, wanted, granted);
   if (error == EBUSY) throw CaptureError("is in use by another program");
@@ -71,7 +71,7 @@ void V4l2Buffers::map(int index) {
   v4l2_buffer buffer = describe(index, planes);
   if (const int error = device_.call(VIDIOC_QUERYBUF, &buffer)) fail("describes no buffer", error);
   Mapping& mapping = mappings_.emplace_back();
-  for (int plane = 0; plane < format_.memory_planes; ++plane) {
+  for (int plane = 0; plane < format_.layout.memory_planes; ++plane) {
     const auto at = static_cast<std::size_t>(plane);
     const std::size_t length = multiplanar() ? planes.at(at).length : buffer.length;
     const auto offset =
@@ -95,7 +95,7 @@ void V4l2Buffers::unmap() noexcept {
 int V4l2Buffers::queue(int index) noexcept {
   std::array<v4l2_plane, VIDEO_MAX_PLANES> planes{};
   v4l2_buffer buffer = describe(index, planes);
-  if (multiplanar()) buffer.length = static_cast<__u32>(format_.memory_planes);
+  if (multiplanar()) buffer.length = static_cast<__u32>(format_.layout.memory_planes);
   return device_.call(VIDIOC_QBUF, &buffer);
 }
 
@@ -117,7 +117,7 @@ std::optional<ImageView> V4l2Buffers::view(const v4l2_buffer& buffer) const {
     if (begin > end || end > size) return std::nullopt;
     filled.at(i) = mapping.areas.at(i).subspan(begin, end - begin);
   }
-  return view_buffer(format_, filled);
+  return view_buffer(format_.layout, filled);
 }
 
 void V4l2Buffers::give_back(int index) noexcept {

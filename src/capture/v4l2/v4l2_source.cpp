@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/wakeup.h"
+#include "capture/sequence_count.h"
 #include "capture/v4l2/controls.h"
 #include "capture/v4l2/stamp.h"
 #include "capture/v4l2/stream.h"
@@ -99,8 +100,8 @@ void V4l2Source::describe(const v4l2_capability& capability) {
            " Hz";
   }
   description_ = name_ + " (" + text(capability.card) + ", " + text(capability.driver) + "), " +
-                 fourcc_text(format_.fourcc) + " " + std::to_string(format_.size.width) + " x " +
-                 std::to_string(format_.size.height) + " at " + rate + ", " +
+                 fourcc_text(format_.fourcc) + " " + std::to_string(format_.layout.size.width) +
+                 " x " + std::to_string(format_.layout.size.height) + " at " + rate + ", " +
                  std::to_string(buffers_->count()) + " buffers";
 }
 

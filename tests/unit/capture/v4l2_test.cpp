@@ -5,6 +5,8 @@
 #include <numeric>
 #include <vector>
 
+#include "capture/buffer_layout.h"
+#include "capture/sequence_count.h"
 #include "capture/v4l2/format.h"
 #include "capture/v4l2/stamp.h"
 #include "capture/v4l2/v4l2_source.h"
@@ -87,7 +89,7 @@ class ViewBuffer : public testing::Test {
   }
 
   std::array<std::byte, 256> bytes{};
-  V4l2Format format;
+  BufferLayout format;
 };
 
 TEST_F(ViewBuffer, KeepsThePaddingOfRows) {
