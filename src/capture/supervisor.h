@@ -39,7 +39,7 @@ struct SupervisorOptions {
   std::chrono::nanoseconds restart_min{2'000'000'000};   ///< a stalled camera is restarted
   std::chrono::nanoseconds restart_max{16'000'000'000};  ///< ever more seldom, up to this
   std::chrono::nanoseconds reopen_min{50'000'000};       ///< a missing camera is looked for
-  std::chrono::nanoseconds reopen_max{400'000'000};      ///< ever more seldom, up to this
+  std::chrono::nanoseconds reopen_max{200'000'000};      ///< ever more seldom, up to this
   std::chrono::nanoseconds tick{100'000'000};            ///< next() returns at least this often
 };
 

@@ -123,9 +123,9 @@ TEST_F(SupervisorTest, WaitsForACameraThatIsNotThereYet) {
   EXPECT_THAT(told(), ElementsAre("no camera: /dev/v4l/by-id/x is not there"));
   EXPECT_EQ(supervisor.counts().failed_opens, camera.opened);
   for (std::size_t i = 1; i < camera.opened_at_ms.size(); ++i) {
-    EXPECT_LE(camera.opened_at_ms[i] - camera.opened_at_ms[i - 1], 400) << "the back-off is capped";
+    EXPECT_LE(camera.opened_at_ms[i] - camera.opened_at_ms[i - 1], 200) << "the back-off is capped";
   }
-  EXPECT_LE(camera.opened, 20) << "it backs off";
+  EXPECT_LE(camera.opened, 28) << "it backs off";
   camera.absent.clear();
   camera.frames({0});
   run_script();
@@ -166,7 +166,7 @@ TEST_F(SupervisorTest, ACameraThatGoesAsSoonAsItIsOpenedIsTriedEverMoreSeldom) {
   for (int i = 0; i < 20; ++i) camera.other(Grab::Kind::lost, "unplugged");
   camera.period = milliseconds(0);
   run_script();
-  EXPECT_GE(camera.opened_at_ms.back(), 20 * 300);
+  EXPECT_GE(camera.opened_at_ms.back(), 17 * 200);
   EXPECT_FALSE(events.at(1).repeated);
   for (std::size_t i = 2; i < events.size(); ++i) EXPECT_TRUE(events[i].repeated);
 }
