@@ -2,7 +2,7 @@
 # shellcheck shell=bash
 build_packages=(
   build-essential ccache cmake git ninja-build pkg-config
-  libbenchmark-dev libcli11-dev libgmock-dev libgtest-dev libhwy-dev liblcm-bin liblcm-dev
+  libbenchmark-dev libcamera-dev libcli11-dev libgmock-dev libgtest-dev libhwy-dev liblcm-bin liblcm-dev
   libopencv-dev libpng-dev libspdlog-dev libsystemd-dev libtomlplusplus-dev libturbojpeg0-dev
   libyaml-cpp-dev nlohmann-json3-dev zlib1g-dev
 )

@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "base/errors.h"
+#include "capture/libcamera/libcamera.h"
 #include "capture/replay/faults.h"
 #include "capture/replay/replay_source.h"
 #include "capture/v4l2/v4l2_source.h"
@@ -38,14 +39,16 @@ SourceSetup make_replay(const DaemonConfig::SourcePart& part, const std::string&
   return setup;
 }
 
-SourceSetup make_v4l2(const DaemonConfig::SourcePart& part, const std::string& device,
-                      const Camera& camera) {
+// `make`: make_v4l2_source or make_libcamera_source.
+template <class Make>
+SourceSetup make_camera(const DaemonConfig::SourcePart& part, const std::string& name,
+                        const Camera& camera, ListSource kind, Make make) {
   CameraSettings settings = part.camera;
   settings.size = camera.model->image_size();
   SourceSetup setup;
-  setup.kind = ListSource::v4l2;
+  setup.kind = kind;
   setup.clock = std::make_unique<SystemClock>();
-  setup.source = make_v4l2_source(device, settings, *setup.clock);
+  setup.source = make(name, settings, *setup.clock);
   return setup;
 }
 
@@ -57,7 +60,12 @@ SourceSetup make_source(const DaemonConfig& config, const Camera& camera) {
   const std::string scheme = uri.substr(0, colon);
   const std::string rest = colon == std::string::npos ? "" : uri.substr(colon + 1);
   if (scheme == "replay" && !rest.empty()) return make_replay(config.source, rest, camera);
-  if (scheme == "v4l2" && !rest.empty()) return make_v4l2(config.source, rest, camera);
+  if (scheme == "v4l2" && !rest.empty()) {
+    return make_camera(config.source, rest, camera, ListSource::v4l2, make_v4l2_source);
+  }
+  if (scheme == "libcamera" && !rest.empty()) {
+    return make_camera(config.source, rest, camera, ListSource::libcamera, make_libcamera_source);
+  }
   throw ConfigError("source", "uri", uri.empty() ? "is missing" : "is \"" + uri + "\"",
                     "must be v4l2:DEVICE, libcamera:ID or replay:PATH");
 }
