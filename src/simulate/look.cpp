@@ -83,10 +83,10 @@ Bark draw_bark(Random& random, bool bright) {
              : mix(Colour{1.2F, 1, 0.85F}, Colour{1, 1, 0.95F}, random.uniform(0, 1));
   const float level = bright ? random.uniform(0.35F, 0.75F) : random.uniform(0.05F, 0.22F);
   bark.light = tinted(random, tint, level);
-  bark.dark = bark.light * random.uniform(0.25F, 0.75F);
+  bark.dark = bark.light * random.uniform(0.15F, 0.65F);
   bark.scale = random.uniform(10, 45);
   bark.stretch = random.uniform(2, 9);
-  bark.contrast = random.uniform(0.2F, 1);
+  bark.contrast = random.uniform(0.3F, 1.2F);
   bark.moss = random.chance(0.35F) ? random.uniform(0.1F, 0.8F) : 0;
   bark.birch = bright && random.chance(0.5F);
   return bark;

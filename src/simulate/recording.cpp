@@ -1,7 +1,11 @@
 #include "simulate/recording.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <future>
+#include <mutex>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "base/errors.h"
 #include "base/files.h"
@@ -123,20 +127,37 @@ void record(const std::filesystem::path& folder, const Camera& camera,
             const RecordingOptions& options, const std::function<void(int)>& progress) {
   const Encoder encoder(options.format, camera.model->image_size());
   copy_camera(folder, camera);
-  Simulator simulator(options.world, options.seed, camera, options.frames);
-  std::optional<Impairer> impairer;
-  if (options.impairment) impairer.emplace(*options.impairment, options.seed);
-  std::vector<FrameTruth> truths;
-  std::string stamps;
-  for (int k = 0; k < options.frames; ++k) {
-    SimFrame frame = simulator.frame(k);
-    frame.truth.file = frame_name(k, options.format);
-    if (impairer) frame.picture = impairer->apply(frame.picture);
-    write_file_atomically(folder / frame.truth.file, encoder.encode(frame.picture));
-    stamps += frame.truth.file + "," + std::to_string(frame.truth.utime) + "\n";
-    truths.push_back(std::move(frame.truth));
-    progress(k + 1);
+  std::vector<FrameTruth> truths(static_cast<std::size_t>(options.frames));
+  std::mutex mutex;
+  int done = 0;
+  const auto render = [&](int first, int step) {
+    Simulator simulator(options.world, options.seed, camera, options.frames);
+    std::optional<Impairer> impairer;
+    if (options.impairment) impairer.emplace(*options.impairment, options.seed);
+    for (int k = first; k < options.frames; k += step) {
+      SimFrame frame = simulator.frame(k);
+      frame.truth.file = frame_name(k, options.format);
+      if (impairer) frame.picture = impairer->apply(frame.picture);
+      write_file_atomically(folder / frame.truth.file, encoder.encode(frame.picture));
+      truths[k] = std::move(frame.truth);
+      const std::lock_guard lock(mutex);
+      progress(++done);
+    }
+  };
+  // What befalls a lens goes on from frame to frame: one thread then.
+  const int threads =
+      options.impairment
+          ? 1
+          : static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 8U));
+  std::vector<std::future<void>> workers;
+  for (int i = 0; i < std::min(threads, options.frames); ++i) {
+    workers.push_back(std::async(std::launch::async, render, i, threads));
   }
+  for (auto& worker : workers) worker.get();
+
+  std::string stamps;
+  for (const FrameTruth& truth : truths)
+    stamps += truth.file + "," + std::to_string(truth.utime) + "\n";
   write_text(folder / "timestamps.csv", stamps);
   write_text(folder / "truth.json", truth_json(camera.config, truths));
 }

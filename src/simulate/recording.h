@@ -21,8 +21,10 @@ struct RecordingOptions {
 
 /// Renders a drive into `folder`, ready to be replayed: frame_000000.FORMAT and on, timestamps.csv,
 /// truth.json, and the camera's files (camera.toml, calibration, mask) copied beside them.
-/// `progress` is called after every frame with the number done. Throws ConfigError when the folder
-/// cannot be written or the format is not known or does not fit the camera's image.
+/// The bytes do not depend on the number of threads.
+/// `progress` is called after every frame with the number done, by one thread at a time. Throws
+/// ConfigError when the folder cannot be written or the format is not known or does not fit the
+/// camera's image.
 void record(const std::filesystem::path& folder, const Camera& camera,
             const RecordingOptions& options, const std::function<void(int)>& progress);
 

@@ -15,7 +15,7 @@ Colour bark(const Bark& b, float x, float y, float along, float footprint, std::
     const float left = resolved(scale, footprint);
     if (left <= 0) continue;
     const float wave = noise(x * scale, y * scale, along * scale / b.stretch, seed + octave);
-    ridge += left * strength * (1.6F * std::sqrt(std::abs(wave)) - 0.8F);
+    ridge += left * strength * (2.4F * std::sqrt(std::abs(wave)) - 1.2F);
   }
   const float slow = noise((x + y) * 2, along * 0.6F, seed + 7);
   return mix(b.dark, b.light, std::clamp(0.55F + b.contrast * ridge, 0.0F, 1.0F)) *
@@ -32,7 +32,9 @@ Colour Surfaces::lit(Colour reflectance, const Hit& hit, const Place& at, int se
   const float length = std::sqrt(1 + look_.sun_slope * look_.sun_slope);
   const float facing =
       (hit.nx * look_.sun_x + hit.ny * look_.sun_y + hit.nz * look_.sun_slope) / length;
-  const float sky = kSkyLight * (0.7F + 0.3F * hit.nz);
+  // More of the sky stands open on the sun's side and above.
+  const float side = hit.nx * look_.sun_x + hit.ny * look_.sun_y;
+  const float sky = kSkyLight * (0.7F + 0.3F * hit.nz + 0.25F * side);
   const float sun = facing <= 0 || look_.sun_strength <= 0
                         ? 0
                         : look_.sun_strength * facing * sunlight_.at(at.x, at.y, at.z, self);

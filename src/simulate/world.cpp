@@ -92,7 +92,9 @@ class Gardener {
           continue;
         world_.columns.push_back(tree);
         if (random_.chance(cover)) cover_foot(tree);
+        if (random_.chance(0.5F * cover)) spread_roots(tree);
         if (random_.chance(0.1F)) hang_branch(tree);
+        if (tree.height > 6) add_crown(tree);
       }
     }
   }
@@ -131,6 +133,22 @@ class Gardener {
     }
   }
 
+  // Roots run from the trunk into the ground.
+  void spread_roots(const Column& tree) {
+    const int roots = 2 + static_cast<int>(random_.bits() % 4);
+    for (int i = 0; i < roots; ++i) {
+      const float bearing = random_.uniform(0, kTurn);
+      const float dx = tree.radius * std::cos(bearing), dy = tree.radius * std::sin(bearing);
+      const float start = 0.7F, end = random_.uniform(1.6F, 3.5F);
+      const float radius = tree.radius * random_.uniform(0.15F, 0.35F);
+      const float ax = tree.x + start * dx, ay = tree.y + start * dy;
+      const float bx = tree.x + end * dx, by = tree.y + end * dy;
+      world_.logs.push_back({ax, ay, ground(ax, ay) + tree.radius * random_.uniform(0.2F, 0.6F), bx,
+                             by, ground(bx, by) - 0.7F * radius, radius, tree.bark,
+                             random_.bits()});
+    }
+  }
+
   void add_tuft(float x, float y, float height, bool green) {
     Leaves tuft;
     tuft.x = x;
@@ -144,6 +162,18 @@ class Gardener {
     tuft.blades = true;
     tuft.seed = random_.bits();
     world_.leaves.push_back(tuft);
+  }
+
+  void add_crown(const Column& tree) {
+    const float depth =
+        0.5F * std::min(tree.height * random_.uniform(0.25F, 0.6F), tree.height - 4.5F);
+    const float h = tree.height - depth;
+    add_bush(tree.x + tree.lean_x * h, tree.y + tree.lean_y * h, tree.z + h,
+             random_.uniform(0.5F, 1.3F) + 4 * tree.radius);
+    Leaves& crown = world_.leaves.back();
+    crown.height = 1.15F * depth;
+    crown.leaf = random_.uniform(0.08F, 0.25F);
+    crown.colour = crown.colour * 0.7F;
   }
 
   void hang_branch(const Column& tree) {
