@@ -52,6 +52,14 @@ TEST(LoadCamera, TheDigestChangesWithEachOfTheThreeFiles) {
   EXPECT_NE(load_camera(file).digest, other_calibration);
 }
 
+TEST(LoadCamera, TheDigestTellsCamerasWithoutAMaskApart) {
+  const TempFolder folder;
+  const auto file = write_small_camera(folder);
+  const std::uint32_t before = load_camera(file).digest;
+  std::ofstream(file, std::ios::app) << "# a note\n";
+  EXPECT_NE(load_camera(file).digest, before);
+}
+
 TEST(LoadCamera, NamesTheFileThatIsMissing) {
   const TempFolder folder;
   EXPECT_THAT(problem_of(folder.path() / "no.toml"), HasSubstr("no.toml"));
