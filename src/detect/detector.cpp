@@ -1,5 +1,6 @@
 #include "detect/detector.h"
 
+#include "detect/bole_detector.h"
 #include "detect/paper.h"
 
 namespace bole {
@@ -10,7 +11,8 @@ std::optional<DetectorMode> detector_mode_from_name(std::string_view name) {
   return std::nullopt;
 }
 
-std::unique_ptr<Detector> make_detector(DetectorMode, const DetectorSetup& setup) {
+std::unique_ptr<Detector> make_detector(DetectorMode mode, const DetectorSetup& setup) {
+  if (mode == DetectorMode::bole) return make_bole_detector(setup);
   return std::make_unique<PaperDetector>(setup);
 }
 

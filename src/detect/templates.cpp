@@ -1,0 +1,231 @@
+#include "detect/templates.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/ground.h"
+
+namespace bole {
+namespace {
+
+constexpr int kFull = 64;           // a response of full contrast
+constexpr double kContrast = 0.20;  // of log brightness: that is full contrast
+constexpr int kAgainst = 19;        // what a band must reach to count for a trunk
+constexpr int kAgainstAbove = 35;   // the same above the horizon
+constexpr int kLeastEvidence = 64;  // of a candidate
+constexpr double kWidthStep = 1.15;
+constexpr double kNarrowest = 4;  // columns
+constexpr double kSlope = 0.30;   // rising ground shifts feet by up to this tangent
+constexpr int kChunk = 64;
+
+int widest_template(const DetectorSetup& setup) {
+  const double widest =
+      std::min(1.3, angular_width(setup.search.diameter.high * 1.1, setup.search.range.low * 0.95));
+  return static_cast<int>(std::ceil(widest * setup.panorama.focal()));
+}
+
+}  // namespace
+
+int Templates::margin(const DetectorSetup& setup) { return widest_template(setup) * 3 / 2 + 48; }
+
+Templates::Templates(const DetectorSetup& setup, int most_candidates)
+    : columns_(setup.panorama.columns),
+      width_(setup.panorama.width),
+      bands_(setup.panorama.rows / Bands::kRows),
+      widest_(widest_template(setup)),
+      most_(most_candidates),
+      wraps_(setup.panorama.wraps()),
+      focal_(setup.panorama.focal()) {
+  const double horizon = setup.panorama.horizon_row() + 0.5;
+  horizon_band_ = std::clamp(static_cast<int>(std::lround(horizon / Bands::kRows)), 0, bands_);
+  const auto band_of_tangent = [&](double down) {
+    return std::clamp((horizon + focal_ * down) / Bands::kRows, 0.0, static_cast<double>(bands_));
+  };
+
+  for (const int flank : {2, 3, 5, 8, 12, 18, 28}) {
+    const int step = flank >= 18 ? 4 : flank >= 8 ? 2 : 1;
+    const int pitch = (width_ + widest_ + 8) / step + kChunk;
+    flanks_.push_back(
+        {flank, step, pitch, std::vector<std::int16_t>(static_cast<std::size_t>(bands_) * pitch)});
+  }
+  const Search& search = setup.search;
+  const double narrowest =
+      std::max(kNarrowest, 0.85 * focal_ * angular_width(search.diameter.low, search.range.high));
+  int last = 0;
+  for (double w = narrowest; w < widest_; w *= kWidthStep) {
+    Size size;
+    const auto nearest = [&](double k) {
+      return [k](const Flank& a, const Flank& b) {
+        return std::abs(std::log(a.width / k)) < std::abs(std::log(b.width / k));
+      };
+    };
+    size.flank = static_cast<int>(
+        std::min_element(flanks_.begin(), flanks_.end(), nearest(std::max(2.0, 0.33 * w))) -
+        flanks_.begin());
+    const int step = flanks_[size.flank].step;
+    size.width = std::max(1, static_cast<int>(std::lround(w / step))) * step;
+    if (size.width <= last) continue;
+    last = size.width;
+    // The ground where a trunk of this angular width and a searched diameter can stand.
+    const double s = std::sin(std::min(1.4, size.width / focal_) / 2);
+    const double nearest_range = std::max(search.diameter.low / (2 * s), search.range.low);
+    const double down = setup.height / std::max(0.5 * nearest_range, nearest_range * (1 - s));
+    size.first_foot = static_cast<int>(band_of_tangent(-kSlope));
+    size.last_foot = static_cast<int>(std::ceil(band_of_tangent(1.15 * down + 0.05)));
+    if (size.last_foot > size.first_foot) sizes_.push_back(size);
+  }
+  for (auto& peaks : peaks_) {
+    peaks.resize(sizes_.size());
+    for (std::size_t i = 0; i < sizes_.size(); ++i) {
+      const int n = (width_ / flanks_[sizes_[i].flank].step + kChunk) / kChunk * kChunk;
+      peaks[i].evidence.resize(n);
+      peaks[i].foot.resize(n);
+    }
+  }
+  found_.reserve(20000);
+  kept_.reserve(most_);
+}
+
+void Templates::respond(const Bands& bands, Flank& flank) const {
+  const int k = flank.width;
+  const float scale = static_cast<float>(kFull / (kContrast * Bands::kScale * k));
+  const int n = std::min(flank.pitch, (width_ + bands.margin() - k) / flank.step);
+  for (int band = 0; band < bands_; ++band) {
+    std::int16_t* response = flank.response.data() + static_cast<std::size_t>(band) * flank.pitch;
+    const std::int32_t* sum = bands.sum(band);
+    const std::uint8_t* seen = bands.seen(band);
+    for (int i = 0; i < n; ++i) {
+      const int x = i * flank.step;
+      const float r = static_cast<float>(sum[x + k] - 2 * sum[x] + sum[x - k]) * scale;
+      const float clipped =
+          std::min(static_cast<float>(kFull), std::max(-static_cast<float>(kFull), r));
+      const int see = seen[x - k] & seen[x - 1] & seen[x] & seen[x + k - 1];
+      response[i] = static_cast<std::int16_t>(static_cast<int>(clipped) * see);
+    }
+  }
+}
+
+void Templates::accumulate(int size_index) {
+  const Size& size = sizes_[size_index];
+  const Flank& flank = flanks_[size.flank];
+  const int across = size.width / flank.step;
+  const int n = static_cast<int>(peaks_[0][size_index].evidence.size());
+  for (int start = 0; start < n; start += kChunk) {
+    std::int16_t sum[2][kChunk] = {}, best[2][kChunk] = {}, foot[2][kChunk] = {};
+    for (int band = 0; band < size.last_foot; ++band) {
+      const std::int16_t* left =
+          flank.response.data() + static_cast<std::size_t>(band) * flank.pitch + start;
+      const std::int16_t* right = left + across;
+      const bool above = band < horizon_band_;
+      const auto end = static_cast<std::int16_t>(band + 1);
+      const auto open = static_cast<std::int16_t>(band + 1 >= size.first_foot ? 0 : 32000);
+      for (int i = 0; i < kChunk; ++i) {
+        const auto l = static_cast<std::int16_t>(-left[i]);
+        const std::int16_t r = right[i];
+        std::int16_t value[2];
+        if (above) {
+          const auto soft = [](int v) { return std::max(v, -(v * 11) / 16); };
+          for (int p = 0; p < 2; ++p) {
+            const int a = soft(p ? -l : l), c = soft(p ? -r : r);
+            value[p] = static_cast<std::int16_t>(
+                (((a + c) / 4 + std::min(a, c) / 2 - kAgainstAbove) * 13) / 32);
+          }
+        } else {
+          const int both = (l + r) / 4;
+          value[0] = static_cast<std::int16_t>(both + std::min(l, r) / 2 - kAgainst);
+          value[1] = static_cast<std::int16_t>(-both - std::max(l, r) / 2 - kAgainst);
+        }
+        for (int p = 0; p < 2; ++p) {
+          const auto s = static_cast<std::int16_t>(std::max<int>(sum[p][i] + value[p], 0));
+          sum[p][i] = s;
+          const bool better = s > best[p][i] + open;
+          best[p][i] = better ? s : best[p][i];
+          foot[p][i] = better ? end : foot[p][i];
+        }
+      }
+    }
+    for (int p = 0; p < 2; ++p) {
+      Peaks& peaks = peaks_[p][size_index];
+      for (int i = 0; i < kChunk; ++i) {
+        peaks.evidence[start + i] = best[p][i];
+        peaks.foot[start + i] = static_cast<std::uint8_t>(foot[p][i]);
+      }
+    }
+  }
+}
+
+// Whether a template of the neighbouring size, about the same centre, has more evidence.
+bool Templates::beaten_by(int size_index, int polarity, double centre, int evidence) const {
+  const Size& size = sizes_[size_index];
+  const int step = flanks_[size.flank].step;
+  const int n = width_ / step;
+  const int place = static_cast<int>(std::lround((centre - size.width * 0.5) / step));
+  const auto& peaks = peaks_[polarity][size_index].evidence;
+  for (int i = place - 1; i <= place + 1; ++i) {
+    const int j = wraps_ ? (i + n) % n : std::clamp(i, 0, n - 1);
+    if (peaks[j] > evidence) return true;
+  }
+  return false;
+}
+
+void Templates::collect(int size_index, int polarity) {
+  const Size& size = sizes_[size_index];
+  const Peaks& peaks = peaks_[polarity][size_index];
+  const int step = flanks_[size.flank].step;
+  const int n = width_ / step;
+  const int reach = std::max(1, static_cast<int>(0.15 * size.width) / step);
+  for (int i = 0; i < n; ++i) {
+    const int evidence = peaks.evidence[i];
+    if (evidence < kLeastEvidence) continue;
+    bool highest = true;
+    for (int d = 1; highest && d <= reach; ++d) {
+      const int before = wraps_ ? (i - d + n) % n : std::max(0, i - d);
+      const int after = wraps_ ? (i + d) % n : std::min(n - 1, i + d);
+      highest =
+          evidence >= peaks.evidence[before] && (evidence > peaks.evidence[after] || after == i);
+    }
+    if (!highest) continue;
+    const double centre = i * step + size.width * 0.5;
+    if (size_index > 0 && beaten_by(size_index - 1, polarity, centre, evidence)) continue;
+    if (size_index + 1 < static_cast<int>(sizes_.size()) &&
+        beaten_by(size_index + 1, polarity, centre, evidence))
+      continue;
+    if (found_.size() == found_.capacity()) return;
+    found_.push_back({static_cast<float>(i * step), static_cast<float>(size.width),
+                      static_cast<float>(peaks.foot[i] * Bands::kRows),
+                      static_cast<float>(evidence) / kFull, polarity == 0});
+  }
+}
+
+// Keeps the most evident; of near twins only the better.
+void Templates::thin_out() {
+  std::sort(found_.begin(), found_.end(), [](const Candidate& a, const Candidate& b) {
+    return a.evidence != b.evidence ? a.evidence > b.evidence
+           : a.left != b.left       ? a.left < b.left
+                                    : a.width < b.width;
+  });
+  kept_.clear();
+  for (const Candidate& c : found_) {
+    if (kept_.size() == most_) break;
+    const bool twin = std::any_of(kept_.begin(), kept_.end(), [&](const Candidate& k) {
+      const float tolerance = std::max(1.5F, 0.15F * std::min(c.width, k.width));
+      float shift = std::abs(c.left + 0.5F * c.width - k.left - 0.5F * k.width);
+      if (wraps_) shift = std::min(shift, static_cast<float>(columns_) - shift);
+      return c.dark == k.dark && shift < tolerance && std::abs(c.width - k.width) < 2 * tolerance &&
+             std::abs(c.foot - k.foot) < std::max(8.0F, 0.35F * c.width);
+    });
+    if (!twin) kept_.push_back(c);
+  }
+}
+
+std::span<const Candidate> Templates::find(const Bands& bands) {
+  for (Flank& flank : flanks_) respond(bands, flank);
+  found_.clear();
+  for (int i = 0; i < static_cast<int>(sizes_.size()); ++i) accumulate(i);
+  for (int i = 0; i < static_cast<int>(sizes_.size()); ++i)
+    for (const int polarity : {0, 1}) collect(i, polarity);
+  thin_out();
+  return kept_;
+}
+
+}  // namespace bole

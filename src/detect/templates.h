@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "detect/bands.h"
+#include "detect/detector.h"
+
+namespace bole {
+
+/// A place where a trunk may stand, as coarse as the templates are.
+struct Candidate {
+  float left = 0;      ///< column of the left edge
+  float width = 0;     ///< columns
+  float foot = 0;      ///< row just below the visible trunk
+  float evidence = 0;  ///< bands of full contrast, less what speaks against
+  bool dark = true;    ///< darker than what is beside it
+};
+
+/// Contrast templates: a trunk is a pair of opposite edges that run down the image together, and it
+/// ends where they do.
+///
+/// For widths in geometric steps the two edges' contrasts are clipped, joined so that the weaker
+/// one counts most, and summed down the column; the sum starts anew wherever it falls below zero,
+/// and its highest value marks the foot. Below the horizon a trunk is darker (or brighter) than
+/// both sides; above it may be darker than the sky on one side and brighter than foliage on the
+/// other, so there the sign counts for less.
+class Templates {
+ public:
+  /// The margin that Bands needs for these templates and whatever reads around a candidate.
+  static int margin(const DetectorSetup& setup);
+
+  Templates(const DetectorSetup& setup, int most_candidates);
+
+  /// The most evident places, best first; valid until the next call.
+  std::span<const Candidate> find(const Bands& bands);
+
+ private:
+  struct Size {
+    int width = 0;                      // columns
+    int flank = 0;                      // index into flanks_
+    int first_foot = 0, last_foot = 0;  // bands: the foot is the lower border of one of them
+  };
+  struct Flank {
+    int width = 0;                       // columns of the means on either side of an edge
+    int step = 0;                        // every how many columns it is evaluated
+    int pitch = 0;                       // evaluated columns a band
+    std::vector<std::int16_t> response;  // bands x pitch; brighter to the right is positive
+  };
+  struct Peaks {  // best sum over all feet, for every left edge
+    std::vector<std::int16_t> evidence;
+    std::vector<std::uint8_t> foot;
+  };
+
+  void respond(const Bands& bands, Flank& flank) const;
+  void accumulate(int size_index);
+  void collect(int size_index, int polarity);
+  bool beaten_by(int size_index, int polarity, double centre, int evidence) const;
+  void thin_out();
+
+  int columns_, width_, bands_, horizon_band_, widest_;
+  std::size_t most_;
+  bool wraps_;
+  double focal_;
+  std::vector<Size> sizes_;
+  std::vector<Flank> flanks_;
+  std::vector<Peaks> peaks_[2];  // dark, bright
+  std::vector<Candidate> found_, kept_;
+};
+
+}  // namespace bole

@@ -1,0 +1,207 @@
+#include "detect/trunk_features.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bole {
+namespace {
+
+using F = TrunkFeatures;
+
+// Borders of the cells across, in widths from the middle.
+constexpr std::array<float, F::kAcross + 1> kBorders = {
+    -1.5F, -1.0F, -0.75F, -0.55F, -0.4F, -0.2F, 0.0F, 0.2F, 0.4F, 0.55F, 0.75F, 1.0F, 1.5F};
+constexpr float kReference = 1440 / 6.2831853F;  // the focal length that pixel limits are meant for
+constexpr float kLeastSpread = 0.06F;            // of log brightness
+
+}  // namespace
+
+float foot_unit(const TrunkShape& shape, double focal) {
+  const float scale = static_cast<float>(focal) / kReference;
+  return std::clamp(0.12F * shape.width(), 0.8F * scale, 5.0F * scale);
+}
+
+FeatureReader::FeatureReader(const DetectorSetup& setup)
+    : rows_(setup.panorama.rows),
+      width_(setup.panorama.width),
+      last_band_(setup.panorama.rows / Bands::kRows),
+      wraps_(setup.panorama.wraps()),
+      focal_(setup.panorama.focal()),
+      horizon_(setup.panorama.horizon_row() + 0.5),
+      height_(setup.height),
+      log_(1024) {
+  for (int i = 0; i < 1024; ++i) log_[i] = std::log(static_cast<float>(i) / 4 + Bands::kBlackLevel);
+}
+
+float FeatureReader::read_grid(const Bands& bands, const TrunkShape& shape, int first_band,
+                               float* out, float* mean) const {
+  const float unit =
+      std::clamp(0.3F * shape.width(), 3.0F, 14.0F * static_cast<float>(focal_) / kReference);
+  const float top = static_cast<float>(first_band * Bands::kRows);
+  std::array<float, F::kHeights + 1> borders;
+  const float part = std::max(shape.foot - 4 * unit - top, 6.0F) / 6;
+  borders[0] = shape.foot + 2 * unit;
+  borders[1] = shape.foot + unit;
+  borders[2] = shape.foot;
+  borders[3] = shape.foot - unit;
+  borders[4] = shape.foot - 2 * unit;
+  borders[5] = shape.foot - 4 * unit;
+  for (int i = 0; i < 6; ++i) borders[6 + i] = borders[5] - part * static_cast<float>(i + 1);
+
+  // Cell means of every band, summed down the column.
+  constexpr int kMost = 256;
+  std::array<std::array<float, F::kAcross>, kMost + 1> sums;
+  const int last =
+      std::min({last_band_, static_cast<int>(borders[0] / Bands::kRows) + 1, first_band + kMost});
+  const int first = std::min(first_band, last - 1);
+  sums[0].fill(0);
+  const float w = shape.width(), sign = shape.dark ? 1.0F : -1.0F;
+  for (int band = first; band < last; ++band) {
+    const std::int32_t* sum = bands.sum(band);
+    const float row = (static_cast<float>(band) + 0.5F) * Bands::kRows - shape.foot;
+    const float middle = shape.centre() + shape.slope() * row;
+    std::array<float, F::kAcross + 1> at;
+    for (int i = 0; i <= F::kAcross; ++i) {
+      const float x = middle + kBorders[i] * w;
+      const auto whole = static_cast<int>(std::floor(x));
+      const float rest = x - static_cast<float>(whole);
+      // Differences of large sums: subtract the first border's in whole numbers.
+      const std::int32_t base = sum[static_cast<int>(std::floor(middle - 1.5F * w))];
+      at[i] = static_cast<float>(sum[whole] - base) +
+              rest * static_cast<float>(sum[whole + 1] - sum[whole]);
+    }
+    const auto& before = sums[band - first];
+    auto& after = sums[band - first + 1];
+    for (int i = 0; i < F::kAcross; ++i)
+      after[i] =
+          before[i] + sign * (at[i + 1] - at[i]) /
+                          (static_cast<float>(Bands::kScale) * (kBorders[i + 1] - kBorders[i]) * w);
+  }
+  const auto sum_at = [&](float row, int i) {
+    const float b = std::clamp(row / Bands::kRows - static_cast<float>(first), 0.0F,
+                               static_cast<float>(last - first) - 1e-3F);
+    const auto whole = static_cast<int>(b);
+    return sums[whole][i] + (b - static_cast<float>(whole)) * (sums[whole + 1][i] - sums[whole][i]);
+  };
+  float total = 0, squares = 0;
+  for (int h = 0; h < F::kHeights; ++h) {
+    const float bottom = static_cast<float>(last * Bands::kRows),
+                start = static_cast<float>(first * Bands::kRows);
+    const float low = std::clamp(borders[h], start + 1, bottom);
+    const float high = std::clamp(borders[h + 1], start, low - 1);
+    for (int i = 0; i < F::kAcross; ++i) {
+      const float value = (sum_at(low, i) - sum_at(high, i)) * Bands::kRows / (low - high);
+      out[h * F::kAcross + i] = value;
+      total += value;
+      squares += value * value;
+    }
+  }
+  constexpr int kCells = F::kHeights * F::kAcross;
+  *mean = total / kCells;
+  const float spread = std::sqrt(std::max(0.0F, squares / kCells - *mean * *mean));
+  const float scale = 1 / std::max(spread, kLeastSpread);
+  for (int i = 0; i < kCells; ++i) out[i] = (out[i] - *mean) * scale;
+  return spread;
+}
+
+// Mean log brightness of a row between two columns.
+float FeatureReader::strip(const std::uint8_t* row, float from, float to) const {
+  int a = static_cast<int>(std::lround(from));
+  const int n = std::max(1, static_cast<int>(std::lround(to)) - a);
+  int sum = 0;
+  if (a >= 0 && a + n <= width_) {
+    for (int x = a; x < a + n; ++x) sum += row[x];
+  } else {
+    for (int x = a; x < a + n; ++x)
+      sum += row[wraps_ ? ((x % width_) + width_) % width_ : std::clamp(x, 0, width_ - 1)];
+  }
+  return log_[4 * sum / n];
+}
+
+void FeatureReader::read_foot(const PanoramaView& panorama, const TrunkShape& shape, float spread,
+                              float* out) const {
+  const float unit = foot_unit(shape, focal_), w = shape.width();
+  const float gap = std::max(1.0F, 0.1F * w), flank = std::max(2.0F, 0.5F * w);
+  const float sign = shape.dark ? 1.0F : -1.0F;
+  std::array<std::array<float, F::kStrips>, F::kFootRows> strips{};
+  for (int j = 0; j < F::kFootRows; ++j) {
+    const float place =
+        shape.foot + (static_cast<float>(j - F::kFootRows / 2) + 0.5F) * unit - 0.5F;
+    const float spacing = std::max(1.0F, 0.5F * unit);
+    const float high = spacing > 1 ? place - 0.5F * spacing : std::floor(place);
+    for (int k = 0; k < 2; ++k) {
+      const float at = high + static_cast<float>(k) * spacing;
+      const int i = std::clamp(static_cast<int>(std::lround(at)), 0, rows_ - 1);
+      const float weight = spacing > 1 ? 0.5F : k == 0 ? 1 - (place - high) : place - high;
+      const float row = static_cast<float>(i) + 0.5F - shape.foot;
+      const float middle = shape.centre() + shape.slope() * row;
+      const std::uint8_t* pixels = panorama.row(i);
+      strips[j][0] +=
+          weight * strip(pixels, middle - 0.5F * w - gap - flank, middle - 0.5F * w - gap);
+      strips[j][1] += weight * strip(pixels, middle - 0.28F * w, middle + 0.28F * w);
+      strips[j][2] +=
+          weight * strip(pixels, middle + 0.5F * w + gap, middle + 0.5F * w + gap + flank);
+    }
+  }
+  // The trunk's own brightness above the foot is the reference.
+  float core = 0;
+  for (int j = 0; j < F::kFootRows / 2; ++j) core += strips[j][1];
+  core /= F::kFootRows / 2;
+  const float scale = sign / std::max(spread, kLeastSpread);
+  for (int j = 0; j < F::kFootRows; ++j) {
+    const auto& s = strips[j];
+    const float values[3] = {s[0] - s[1], s[1] - core, s[2] - s[1]};
+    for (int k = 0; k < F::kStrips; ++k)
+      out[j * F::kStrips + k] = std::clamp(values[k] * scale, -4.0F, 4.0F);
+  }
+}
+
+void FeatureReader::read(const Bands& bands, const PanoramaView& panorama, const TrunkShape& shape,
+                         const EdgeFit& fit, float evidence, int first_band, F::Values& out) const {
+  float mean = 0;
+  float* values = out.data();
+  const float spread = read_grid(bands, shape, first_band, values, &mean);
+  values += F::kHeights * F::kAcross;
+  read_foot(panorama, shape, spread, values);
+  values += F::kFootRows * F::kStrips;
+
+  const auto f = static_cast<float>(focal_);
+  const auto horizon = static_cast<float>(horizon_);
+  const auto height = static_cast<float>(height_);
+  const float w = shape.width();
+  const float s = std::sin(std::min(1.4F, w / f) / 2);
+  const float down = (shape.foot - horizon) / f;
+  const float distance = std::min(60.0F, height / std::max(down, 1e-3F));
+  const float diameter = 2 * distance * s / (1 - s);
+  const float top = static_cast<float>(first_band * Bands::kRows);
+  const float numbers[F::kNumbers] = {
+      std::log(w * kReference / (20 * f)),
+      std::log(w / 6),
+      std::clamp(down, -0.6F, 1.5F),
+      std::log(diameter / 0.4F),
+      std::log(distance / 4),
+      (diameter > 0.9F || diameter < 0.15F) ? 1.0F : 0.0F,
+      spread,
+      shape.dark ? 1.0F : -1.0F,
+      evidence / 10,
+      (shape.foot - top) / (f * 0.8F),
+      std::log(std::max(4.0F, shape.foot - top) / w),
+      fit.contrast_left,
+      fit.contrast_right,
+      std::min(fit.contrast_left, fit.contrast_right),
+      fit.above_left,
+      fit.above_right,
+      std::min(fit.above_left, fit.above_right),
+      fit.agreement,
+      fit.agreement_above,
+      fit.scatter_left,
+      fit.scatter_right,
+      std::abs(shape.left_slope - shape.right_slope) * 20,
+      std::abs(shape.slope()) * 20,
+      (shape.left_slope - shape.right_slope) * 20,
+      shape.slope() * 20,
+  };
+  std::copy(std::begin(numbers), std::end(numbers), values);
+}
+
+}  // namespace bole

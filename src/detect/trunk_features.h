@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "detect/bands.h"
+#include "detect/trunk_shape.h"
+
+namespace bole {
+
+/// What the network is shown of a candidate: the picture about it in coordinates of its own shape,
+/// so that size, place, lean, light and polarity are taken out, and a few numbers.
+struct TrunkFeatures {
+  static constexpr int kHeights = 11;   ///< cells along the trunk, two of them below the foot
+  static constexpr int kAcross = 12;    ///< cells across, out to one width beside it
+  static constexpr int kFootRows = 16;  ///< fine rows about the foot
+  static constexpr int kStrips = 3;     ///< of each: left of the trunk, its core, right of it
+  static constexpr int kNumbers = 25;
+  static constexpr int kCount = kHeights * kAcross + kFootRows * kStrips + kNumbers;
+  using Values = std::array<float, kCount>;
+};
+
+/// The unit of a foot's shift: what the fine rows are apart.
+float foot_unit(const TrunkShape& shape, double focal);
+
+class FeatureReader {
+ public:
+  explicit FeatureReader(const DetectorSetup& setup);
+
+  void read(const Bands& bands, const PanoramaView& panorama, const TrunkShape& shape,
+            const EdgeFit& fit, float evidence, int first_band, TrunkFeatures::Values& out) const;
+
+ private:
+  float read_grid(const Bands& bands, const TrunkShape& shape, int first_band, float* out,
+                  float* mean) const;
+  void read_foot(const PanoramaView& panorama, const TrunkShape& shape, float spread,
+                 float* out) const;
+  float strip(const std::uint8_t* row, float from, float to) const;
+
+  int rows_, width_, last_band_;
+  bool wraps_;
+  double focal_, horizon_, height_;
+  std::vector<float> log_;  // of a quarter grey level
+};
+
+}  // namespace bole

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "detect/network.h"
+#include "detect/templates.h"
+#include "detect/trunk_features.h"
+#include "detect/trunk_shape.h"
+
+namespace bole {
+
+/// A trunk as it stands in the panorama, before geometry makes metres of it.
+struct Trunk {
+  TrunkShape shape;
+  EdgeFit fit;
+  float probability = 0;
+  float centre_sigma = 0;  ///< columns
+  float width_sigma = 0;   ///< of the logarithm
+  float foot_sigma = 0;    ///< rows
+};
+
+/// Candidates, their refinement and judgement.
+class TrunkFinder {
+ public:
+  explicit TrunkFinder(const DetectorSetup& setup);
+
+  /// Trunks that are not out of the question, most probable first; valid until the next call.
+  std::span<Trunk> find(const PanoramaView& panorama);
+
+  /// The steps of find, for the training of the network.
+  std::span<const Candidate> candidates(const PanoramaView& panorama);
+  bool fit(const Candidate& candidate, TrunkShape& shape, EdgeFit& fit) const {
+    return fitter_.fit(bands_, candidate, shape, fit);
+  }
+  void refine(TrunkShape& shape, EdgeFit& fit) const { fitter_.refine(bands_, shape, fit); }
+  void read(const PanoramaView& panorama, const TrunkShape& shape, const EdgeFit& fit,
+            float evidence, TrunkFeatures::Values& out) const;
+
+ private:
+  void suppress();
+  bool same_pixels(const TrunkShape& a, const TrunkShape& b) const;
+
+  int columns_;
+  bool wraps_;
+  double focal_;
+  Bands bands_;
+  Templates templates_;
+  EdgeFitter fitter_;
+  FeatureReader reader_;
+  std::vector<Trunk> trunks_, kept_;
+};
+
+}  // namespace bole

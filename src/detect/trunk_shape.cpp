@@ -1,0 +1,226 @@
+#include "detect/trunk_shape.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace bole {
+namespace {
+
+constexpr int kMostBands = 80;
+constexpr int kWindow = 64;  // columns about an edge that are looked at
+constexpr int kSlopes = 9;
+constexpr float kSlopeStep = 0.015F;  // columns a row
+constexpr float kContrast = 0.22F * Bands::kScale;
+constexpr float kStrongContrast = 1.2F * Bands::kScale;
+constexpr float kWrongSign = -0.7F;  // what a response of the wrong sign counts above the horizon
+
+float response(const std::int32_t* sum, int x, int k) {
+  return static_cast<float>(sum[x + k] - 2 * sum[x] + sum[x - k]) / static_cast<float>(k);
+}
+
+float row_of(int band) { return (static_cast<float>(band) + 0.5F) * Bands::kRows; }
+
+}  // namespace
+
+EdgeFitter::EdgeFitter(const DetectorSetup& setup)
+    : width_(setup.panorama.width),
+      horizon_band_(
+          static_cast<int>(std::lround((setup.panorama.horizon_row() + 0.5) / Bands::kRows))),
+      first_seen_(setup.panorama.width),
+      wraps_(setup.panorama.wraps()) {
+  for (int x = 0; x < width_; ++x)
+    first_seen_[x] = (setup.seen.columns[x].first + Bands::kRows - 1) / Bands::kRows;
+}
+
+int EdgeFitter::first_band(float left, float right) const {
+  int first = 0;
+  const int from = static_cast<int>(std::floor(left)), to = static_cast<int>(std::ceil(right));
+  const int step = std::max(1, (to - from) / 16);
+  for (int x = from; x <= to; x += step) {
+    const int column = wraps_ ? ((x % width_) + width_) % width_ : std::clamp(x, 0, width_ - 1);
+    first = std::max(first, first_seen_[column]);
+  }
+  return first;
+}
+
+EdgeFitter::Line EdgeFitter::search(const Bands& bands, Line start, float foot, Extent extent,
+                                    int flank, int reach, int sign) const {
+  const int origin = static_cast<int>(std::lround(start.column)) - kWindow / 2;
+  std::array<std::array<float, kWindow>, kMostBands> responses;
+  const float scale = static_cast<float>(sign) / static_cast<float>(flank);
+  for (int band = extent.first; band < extent.last; ++band) {
+    auto& line = responses[band - extent.first];
+    const std::int32_t* sum = bands.sum(band) + origin;
+    const float wrong = band < horizon_band_ ? kWrongSign : 1.0F;
+    for (int i = 0; i < kWindow; ++i) {
+      const float r = static_cast<float>(sum[i + flank] - 2 * sum[i] + sum[i - flank]) * scale;
+      const float c = std::min(kContrast, std::max(-kContrast, r));
+      line[i] = c < 0 ? c * wrong : c;
+    }
+  }
+  constexpr int kPlaces = 32;
+  float best = -1e9F;
+  Line found = start;
+  for (int s = 0; s < kSlopes; ++s) {
+    const float slope = kSlopeStep * static_cast<float>(s - kSlopes / 2);
+    std::array<float, kPlaces> total{};
+    for (int band = extent.first; band < extent.last; ++band) {
+      const int shift = static_cast<int>(std::lround(slope * (row_of(band) - foot)));
+      const float* line = responses[band - extent.first].data() +
+                          std::clamp(shift + kWindow / 2 - kPlaces / 2, 0, kWindow - kPlaces);
+      for (int i = 0; i < kPlaces; ++i) total[i] += line[i];
+    }
+    for (int i = kPlaces / 2 - reach; i <= kPlaces / 2 + reach; ++i) {
+      const float value = total[i] * (1 - 0.002F * static_cast<float>(std::abs(i - kPlaces / 2)));
+      if (value <= best) continue;
+      best = value;
+      found = {static_cast<float>(origin + kWindow / 2 + i - kPlaces / 2), slope};
+    }
+  }
+  return found;
+}
+
+EdgeFitter::Placed EdgeFitter::place(const Bands& bands, Line& line, float foot, Extent extent,
+                                     int flank, int sign) const {
+  constexpr int kReach = 3;
+  std::array<float, kMostBands> rows, places, weights;
+  int n = 0;
+  for (int band = extent.first; band < extent.last; ++band) {
+    const float row = row_of(band) - foot;
+    const int middle = static_cast<int>(std::lround(line.column + line.slope * row));
+    std::array<float, 2 * kReach + 1> r;
+    int peak = 0;
+    for (int o = -kReach; o <= kReach; ++o) {
+      r[o + kReach] = response(bands.sum(band), middle + o, flank) * static_cast<float>(sign);
+      if (band < horizon_band_) r[o + kReach] = std::abs(r[o + kReach]);
+      if (r[o + kReach] > r[peak]) peak = o + kReach;
+    }
+    if (r[peak] < 0.15F * kContrast || peak == 0 || peak == 2 * kReach) continue;
+    const float bend = r[peak - 1] - 2 * r[peak] + r[peak + 1];
+    const float shift = bend < -1e-3F ? 0.5F * (r[peak - 1] - r[peak + 1]) / bend : 0;
+    rows[n] = row;
+    places[n] = static_cast<float>(middle + peak - kReach) + std::clamp(shift, -0.5F, 0.5F);
+    weights[n] = std::min(r[peak], kStrongContrast);
+    ++n;
+  }
+  if (n < 4) return {3, 1};
+  // Straight line by least squares; places far off it count less and less.
+  Line fitted = line;
+  float scatter = 1, slope_variance = 1;
+  for (int round = 0; round < 3; ++round) {
+    const float limit = round == 0 ? 2.0F : std::max(0.4F, 1.5F * scatter);
+    double s = 0, sr = 0, srr = 0, sp = 0, srp = 0, se = 0;
+    for (int i = 0; i < n; ++i) {
+      const float error = places[i] - fitted.column - fitted.slope * rows[i];
+      const float u = error / (2.5F * limit);
+      const float tail = u * u < 1 ? (1 - u * u) * (1 - u * u) : 0;
+      const double w = weights[i] * tail;
+      s += w;
+      sr += w * rows[i];
+      srr += w * rows[i] * rows[i];
+      sp += w * places[i];
+      srp += w * rows[i] * places[i];
+      se += w * error * error;
+    }
+    if (s <= 0) break;
+    // A weak pull towards the searched slope keeps short trunks from tilting.
+    const double pull = s * 40;
+    const double det = s * (srr + pull) - sr * sr;
+    if (det <= 0) break;
+    const double slope = (s * (srp + pull * line.slope) - sr * sp) / det;
+    fitted = {static_cast<float>((sp - slope * sr) / s), static_cast<float>(slope)};
+    scatter = static_cast<float>(std::sqrt(se / s));
+    slope_variance = static_cast<float>(std::max(0.04, se / s) * s / det * s / std::max(4, n));
+  }
+  if (std::abs(fitted.slope) < 0.12F && std::abs(fitted.column - line.column) < 6) line = fitted;
+  return {scatter, slope_variance};
+}
+
+void EdgeFitter::judge(const Bands& bands, const TrunkShape& shape, Extent extent,
+                       EdgeFit& fit) const {
+  const int flank = std::clamp(static_cast<int>(0.25F * shape.width()), 2, 6);
+  const float sign = shape.dark ? 1.0F : -1.0F;
+  std::array<float, 2> sum{}, above{};
+  int below_count = 0, above_count = 0, agree = 0, agree_above = 0;
+  for (int band = extent.first; band < extent.last; ++band) {
+    const float row = row_of(band) - shape.foot;
+    const float places[2] = {shape.left + shape.left_slope * row,
+                             shape.right + shape.right_slope * row};
+    float r[2];
+    for (int e = 0; e < 2; ++e) {
+      const float value =
+          response(bands.sum(band), static_cast<int>(std::lround(places[e])), flank);
+      r[e] = std::clamp((e == 0 ? -sign : sign) * value / kContrast, -1.0F, 1.0F);
+    }
+    if (band < horizon_band_) {
+      ++above_count;
+      for (int e = 0; e < 2; ++e) above[e] += std::abs(r[e]);
+      agree_above += std::min(std::abs(r[0]), std::abs(r[1])) > 0.3F;
+    } else {
+      ++below_count;
+      for (int e = 0; e < 2; ++e) sum[e] += r[e];
+      agree += std::min(r[0], r[1]) > 0.25F;
+    }
+  }
+  const auto share = [](auto value, int n) {
+    return n > 0 ? static_cast<float>(value) / static_cast<float>(n) : 0.0F;
+  };
+  fit.contrast_left = share(sum[0], below_count);
+  fit.contrast_right = share(sum[1], below_count);
+  fit.above_left = share(above[0], above_count);
+  fit.above_right = share(above[1], above_count);
+  fit.agreement = share(agree, below_count);
+  fit.agreement_above = share(agree_above, above_count);
+  fit.bands = extent.count();
+}
+
+EdgeFitter::Extent EdgeFitter::extent(const Bands& bands, float left, float width,
+                                      float foot) const {
+  const float flare = std::min(0.5F * width, 0.3F * foot);
+  Extent extent;
+  extent.last = std::clamp(static_cast<int>((foot - flare) / Bands::kRows), 0, bands.count());
+  extent.first = std::max(first_band(left, left + width), extent.last - kMostBands);
+  return extent;
+}
+
+bool EdgeFitter::fit(const Bands& bands, const Candidate& c, TrunkShape& shape,
+                     EdgeFit& fit) const {
+  const Extent straight = extent(bands, c.left, c.width, c.foot);
+  if (straight.count() < 3) return false;
+  const int flank = std::clamp(static_cast<int>(0.3F * c.width), 2, 8);
+  const int reach = std::min(10, static_cast<int>(2 + 0.2F * c.width));
+  const int sign = c.dark ? 1 : -1;
+  const Line left = search(bands, {c.left, 0}, c.foot, straight, flank, reach, -sign);
+  const Line right = search(bands, {c.left + c.width, 0}, c.foot, straight, flank, reach, sign);
+  if (right.column - left.column < 2.5F) return false;
+  shape = {.foot = c.foot,
+           .left = left.column,
+           .right = right.column,
+           .left_slope = left.slope,
+           .right_slope = right.slope,
+           .dark = c.dark};
+  refine(bands, shape, fit);
+  return true;
+}
+
+void EdgeFitter::refine(const Bands& bands, TrunkShape& shape, EdgeFit& fit) const {
+  const Extent straight = extent(bands, shape.left, shape.width(), shape.foot);
+  const int flank = std::clamp(static_cast<int>(0.2F * shape.width()), 2, 5);
+  const int sign = shape.dark ? 1 : -1;
+  Line left{shape.left, shape.left_slope}, right{shape.right, shape.right_slope};
+  const Placed l = place(bands, left, shape.foot, straight, flank, -sign);
+  const Placed r = place(bands, right, shape.foot, straight, flank, sign);
+  if (right.column - left.column > 2.5F) {
+    shape.left = left.column;
+    shape.left_slope = left.slope;
+    shape.right = right.column;
+    shape.right_slope = right.slope;
+  }
+  fit.scatter_left = l.scatter;
+  fit.scatter_right = r.scatter;
+  fit.slope_sigma = 0.5F * std::sqrt(l.slope_variance + r.slope_variance);
+  judge(bands, shape, straight, fit);
+}
+
+}  // namespace bole

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <span>
+
+#include "detect/bands.h"
+#include "detect/templates.h"
+
+namespace bole {
+
+/// A trunk's outline in the panorama: two straight edges that end at the foot. Columns are
+/// continuous, 0 at the left border of column 0; rows likewise.
+struct TrunkShape {
+  float foot = 0;                         ///< row where the visible trunk ends
+  float left = 0, right = 0;              ///< columns of the edges at the foot
+  float left_slope = 0, right_slope = 0;  ///< columns a row
+  bool dark = true;
+
+  float width() const { return right - left; }
+  float centre() const { return 0.5F * (left + right); }
+  float slope() const { return 0.5F * (left_slope + right_slope); }
+};
+
+/// How well two lines describe a trunk's edges.
+struct EdgeFit {
+  float contrast_left = 0, contrast_right = 0;  ///< mean clipped response along the line, at most 1
+  float above_left = 0, above_right = 0;        ///< the same of the part above the horizon
+  float agreement = 0;        ///< share of bands below the horizon where both edges respond
+  float agreement_above = 0;  ///< share of bands above it
+  float scatter_left = 0, scatter_right = 0;  ///< of the edges' places about the lines, columns
+  int bands = 0;
+  float slope_sigma = 0;  ///< standard deviation of the mean slope
+};
+
+/// Places both edges as lines: a search over shifts and slopes for the most contrast along all
+/// bands, then straight lines through the sub-column places of the contrast's peaks. The root flare
+/// is left out.
+class EdgeFitter {
+ public:
+  explicit EdgeFitter(const DetectorSetup& setup);
+
+  /// The shape a candidate is refined to; false when there is nothing to fit.
+  bool fit(const Bands& bands, const Candidate& candidate, TrunkShape& shape, EdgeFit& fit) const;
+
+  /// Places the edges of a shape anew, from where they are; then `fit` describes them.
+  void refine(const Bands& bands, TrunkShape& shape, EdgeFit& fit) const;
+
+  /// The first band that is seen in all columns from `left` to `right`.
+  int first_band(float left, float right) const;
+
+ private:
+  struct Line {
+    float column = 0, slope = 0;  // at the foot; columns a row
+  };
+  struct Placed {
+    float scatter = 0, slope_variance = 1;
+  };
+  struct Extent {
+    int first = 0, last = 0;  // bands
+    int count() const { return last - first; }
+  };
+  // What of a trunk is straight: from the upper border to above the root flare.
+  Extent extent(const Bands& bands, float left, float width, float foot) const;
+  Line search(const Bands& bands, Line start, float foot, Extent extent, int flank, int reach,
+              int sign) const;
+  Placed place(const Bands& bands, Line& line, float foot, Extent extent, int flank,
+               int sign) const;
+  void judge(const Bands& bands, const TrunkShape& shape, Extent extent, EdgeFit& fit) const;
+
+  int width_, horizon_band_;
+  std::vector<int> first_seen_;  // band, for each column
+  bool wraps_;
+};
+
+}  // namespace bole

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "geometry/panorama_view.h"
+
+namespace bole {
+
+/// Whether a camera can see well enough for its lists to mean something: an empty list from one
+/// that cannot is not 'no trees'. Judged from cheap statistics of the panoramas that detection
+/// works on anyway (every third row and second column of what is seen).
+class VisionHealth {
+ public:
+  enum class Reason : std::uint8_t { none, dark, glare, covered, smeared, frozen };
+
+  /// `seen` must outlive this.
+  VisionHealth(const PanoramaGeometry& geometry, const SeenMap& seen);
+
+  /// What is wrong with the view as of this frame, the gravest reason first. A reason must show in
+  /// three frames running before it is told, and be gone for three before it is taken back.
+  ///
+  ///   dark     hardly any grey level left to tell things apart
+  ///   glare    saturated, or veiled to one bright grey, over much of the panorama
+  ///   covered  a quarter of the bearings or more shows one even grey from top to bottom
+  ///   smeared  over most of the panorama there are contrasts, but only blurred ones
+  ///   frozen   four frames running are equal to the last bit. A sensor's noise makes that
+  ///            impossible for a camera that works; a folder that replays one picture over and over
+  ///            is rightly called frozen, too
+  Reason observe(const PanoramaView& panorama);
+
+  static constexpr int kSectors = 16;
+
+  /// What a reason is judged from; for tests and those who set the limits.
+  struct Statistics {
+    float median = 0, high = 0;  ///< grey levels: half, and 95 %, of the pixels lie below
+    float saturated_ground = 0;  ///< share of the pixels below the horizon
+    float saturated = 0;         ///< share of all pixels
+    float even_sectors = 0;      ///< share of the seen sectors without contrast
+    float sharp_sectors = 0;     ///< share of the other sectors with fine contrast
+    float contrast = 0;          ///< median over the sectors of the spread of grey levels
+    std::uint64_t checksum = 0;
+  };
+  const Statistics& statistics() const { return statistics_; }
+
+ private:
+  void measure(const PanoramaView& panorama);
+  Reason judge();
+
+  struct Sector {
+    int first = 0, last = 0;  // columns
+    bool seen = false;
+  };
+  PanoramaGeometry geometry_;
+  SeenMap seen_;
+  std::array<Sector, kSectors> sectors_;
+  std::array<std::array<std::uint32_t, 256>, kSectors> histograms_{};
+  Statistics statistics_;
+  std::uint64_t last_checksum_ = 0;
+  int repeats_ = 0;
+  Reason told_ = Reason::none, coming_ = Reason::none;
+  int coming_for_ = 0;
+};
+
+/// "dark", "glare", ...; empty for none.
+std::string_view name(VisionHealth::Reason reason);
+
+}  // namespace bole

@@ -1,0 +1,104 @@
+#include "detect/bole_detector.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "painted_panorama.h"
+
+namespace bole {
+namespace {
+
+std::vector<Tree> sure_trees(const PaintedPanorama& panorama, const Search& search = {}) {
+  const auto detector = make_bole_detector(panorama.setup(search));
+  std::vector<Tree> sure;
+  for (const Tree& tree : detector->detect(panorama.view()))
+    if (tree.score >= 0.5F) sure.push_back(tree);
+  return sure;
+}
+
+PanoramaGeometry usual() { return full_panorama(1440, radians(27), 0.9, 1.0); }
+
+void expect_found(const std::vector<Tree>& trees, const PaintedPanorama::Bar& bar) {
+  for (const Tree& tree : trees) {
+    if (std::abs(wrap_angle(tree.bearing - bar.bearing)) > radians(1)) continue;
+    EXPECT_NEAR(tree.range, bar.range, 0.04 * bar.range);
+    EXPECT_NEAR(tree.diameter, bar.diameter, 0.04);
+    EXPECT_NEAR(std::sin(tree.angular_width / 2), tree.diameter / (2 * tree.range), 1e-3);
+    EXPECT_GT(tree.range_sigma, 0);
+    return;
+  }
+  ADD_FAILURE() << "no tree at bearing " << bar.bearing;
+}
+
+TEST(BoleDetector, PlacesTrunks) {
+  PaintedPanorama panorama(usual());
+  const PaintedPanorama::Bar bars[] = {
+      {0.5, 3.0, 0.4, 45}, {-1.2, 5.0, 0.3, 50}, {2.0, 3.0, 0.35, 60}, {-2.4, 6.5, 0.5, 40}};
+  for (const auto& bar : bars) panorama.plant(bar);
+  const auto trees = sure_trees(panorama);
+  for (const auto& bar : bars) expect_found(trees, bar);
+  EXPECT_EQ(trees.size(), std::size(bars));
+}
+
+TEST(BoleDetector, FindsATrunkAcrossTheSeam) {
+  PaintedPanorama panorama(usual());
+  const PaintedPanorama::Bar bar{-kPi + 0.01, 3.0, 0.4, 45};
+  panorama.plant(bar);
+  const auto trees = sure_trees(panorama);
+  expect_found(trees, bar);
+  EXPECT_EQ(trees.size(), 1U);
+}
+
+TEST(BoleDetector, FindsNothingWhereNothingStands) {
+  EXPECT_THAT(sure_trees(PaintedPanorama(usual())), testing::IsEmpty());
+}
+
+TEST(BoleDetector, LeavesOutTrunksBeyondTheSearchedRange) {
+  PaintedPanorama panorama(usual());
+  panorama.plant({0.5, 6.0, 0.4, 45});
+  EXPECT_THAT(sure_trees(panorama, {.range = {1, 4}, .diameter = {0.2, 0.8}}), testing::IsEmpty());
+}
+
+TEST(BoleDetector, WorksOnPartOfATurnAtAnotherScale) {
+  PanoramaGeometry geometry = full_panorama(2200, radians(30), 1.5, 1.6);
+  geometry.first_column = 700;
+  geometry.width = 800;
+  PaintedPanorama panorama(geometry, 1.6);
+  const PaintedPanorama::Bar bar{0.2, 4.0, 0.4, 45};
+  panorama.plant(bar);
+  expect_found(sure_trees(panorama), bar);
+}
+
+TEST(BoleDetector, KeepsATrunkOnRisingGroundAndSaysThatItsRangeIsUncertain) {
+  const PanoramaGeometry geometry = usual();
+  PaintedPanorama panorama(geometry);
+  const int horizon = static_cast<int>(geometry.horizon_row());
+  // The ground up to ten rows above the horizon, and a trunk that stands up there.
+  for (int row = horizon - 10; row <= horizon; ++row)
+    for (int x = 0; x < geometry.width; ++x)
+      panorama.at(row, x) = panorama.at(2 * horizon - row + 1, x);
+  for (int row = 0; row < horizon - 8; ++row)
+    for (int x = 700; x < 716; ++x) panorama.at(row, x) = static_cast<std::uint8_t>(40 + x % 5);
+  const auto trees = sure_trees(panorama);
+  ASSERT_EQ(trees.size(), 1U);
+  EXPECT_GE(trees[0].range, 1.0F);
+  EXPECT_LE(trees[0].range, 8.0F);
+  EXPECT_GT(trees[0].range_sigma, 0.25F * trees[0].range);
+}
+
+TEST(BoleDetector, SaysTheSameOfTheSameFrame) {
+  PaintedPanorama panorama(usual());
+  panorama.plant({0.5, 3.0, 0.4, 45});
+  const auto detector = make_bole_detector(panorama.setup());
+  const auto first = detector->detect(panorama.view());
+  ASSERT_FALSE(first.empty());
+  const Tree tree = first[0];
+  const auto second = detector->detect(panorama.view());
+  EXPECT_EQ(tree.range, second[0].range);
+  EXPECT_EQ(tree.score, second[0].score);
+}
+
+}  // namespace
+}  // namespace bole
