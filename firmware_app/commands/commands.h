@@ -8,6 +8,7 @@ namespace bole {
 // throws: ConfigError for exit code 2, any other exception for 1.
 
 void add_detect(CLI::App& app);
+void add_eval(CLI::App& app);
 void add_listen(CLI::App& app);
 void add_sim(CLI::App& app);
 

@@ -13,8 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kLeastScore = 0.05F;
-
 struct Options {
   std::string camera;
   std::string mode = "bole";
@@ -22,16 +20,9 @@ struct Options {
   std::vector<std::string> images;
 };
 
-// The trees worth telling of; they come best first.
-std::span<const Tree> told(std::span<const Tree> trees) {
-  std::size_t count = 0;
-  while (count < trees.size() && trees[count].score >= kLeastScore) ++count;
-  return trees.first(count);
-}
-
 void detect_in(ImageDetector& detector, const fs::path& image, const std::string& annotate) {
   const cv::Mat3b picture = read_picture(image);
-  const std::span<const Tree> trees = told(detector.detect(picture));
+  const std::span<const Tree> trees = detector.detect(picture);
   std::puts(detection_line(image.filename().string(), trees).c_str());
   if (annotate.empty()) return;
   write_annotations(annotate, image.stem().string(), detector.camera(), detector.table(), picture,

@@ -1,11 +1,9 @@
-#include <unistd.h>
-
-#include <cstdio>
 #include <memory>
 #include <string>
 
 #include "base/errors.h"
 #include "commands/commands.h"
+#include "commands/progress.h"
 #include "simulate/invented_camera.h"
 #include "simulate/recording.h"
 
@@ -19,12 +17,6 @@ struct SimCommand {
   std::string impairment;
   simulate::RecordingOptions recording;
 };
-
-// On a terminal only, and only where a person has to wait.
-void show_progress(int done, int all) {
-  if (::isatty(STDERR_FILENO) == 0 || all < 10) return;
-  std::fprintf(stderr, "\rframe %d of %d%s", done, all, done == all ? "\n" : "");
-}
 
 void simulate_drive(SimCommand command) {
   command.recording.world = simulate::preset(command.preset);

@@ -5,7 +5,6 @@
 #include <opencv2/imgcodecs.hpp>
 
 namespace bole {
-namespace {
 
 void write_picture(const std::filesystem::path& file, const cv::Mat3b& picture) {
   if (!cv::imwrite(file.string(), picture)) {
@@ -13,13 +12,13 @@ void write_picture(const std::filesystem::path& file, const cv::Mat3b& picture) 
   }
 }
 
-}  // namespace
-
 void write_annotations(const std::filesystem::path& folder, const std::string& name,
                        const Camera& camera, const WarpTable& table, const cv::Mat3b& picture,
                        std::span<const Tree> trees) {
   std::filesystem::create_directories(folder);
-  write_picture(folder / (name + "_panorama.png"), draw_panorama(camera, table, picture, trees));
+  std::vector<TrunkMark> marks;
+  for (const Tree& tree : trees) marks.push_back(mark_of(tree));
+  write_picture(folder / (name + "_panorama.png"), draw_panorama(camera, table, picture, marks));
   write_picture(folder / (name + "_raw.png"), draw_raw(camera, picture, trees));
   write_picture(folder / (name + "_map.png"), draw_polar_map(camera.config.search, trees));
 }

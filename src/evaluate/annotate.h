@@ -3,10 +3,12 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <opencv2/core.hpp>
 
 #include "detect/tree.h"
+#include "evaluate/drawing.h"
 #include "warp/camera_files.h"
 #include "warp/warp_table.h"
 
@@ -14,10 +16,22 @@ namespace bole {
 
 /// The pictures in which a person checks a list of trees against its frame.
 
-/// The panorama, twice its size, with the ground's lines at whole metres, and on each trunk its
-/// rectangle from the foot up, its score and its range.
+/// A rectangle on a trunk, and what is written under its foot.
+struct TrunkMark {
+  double bearing = 0;         ///< radians
+  double angular_width = 0;   ///< radians
+  double base_elevation = 0;  ///< radians
+  Colour colour;
+  std::vector<std::string> labels;
+};
+
+/// A detected tree in the colour of its score, with its score and its range.
+TrunkMark mark_of(const Tree& tree);
+
+/// The panorama, twice its size, with the ground's lines at whole metres and the marked trunks'
+/// rectangles from the foot up.
 cv::Mat3b draw_panorama(const Camera& camera, const WarpTable& table, const cv::Mat3b& picture,
-                        std::span<const Tree> trees);
+                        std::span<const TrunkMark> marks);
 
 /// The raw image with the same lines and rectangles, un-warped onto it, and the robot's forward and
 /// left named.
@@ -26,6 +40,9 @@ cv::Mat3b draw_raw(const Camera& camera, const cv::Mat3b& picture, std::span<con
 /// The ground seen from above, forward up and left to the left: feet and sizes of the trunks to
 /// scale, with the uncertainty of their range, on circles at whole metres.
 cv::Mat3b draw_polar_map(const Search& search, std::span<const Tree> trees);
+
+/// Writes a PNG file. Throws std::runtime_error when that fails.
+void write_picture(const std::filesystem::path& file, const cv::Mat3b& picture);
 
 /// Writes all three as PNG: <folder>/<name>_panorama.png, _raw.png, _map.png. Throws
 /// std::runtime_error when that fails.

@@ -48,39 +48,48 @@ void draw_depths(cv::Mat3b& canvas, Labels& labels, const PanoramaGeometry& pano
 
 // The rectangle from the foot to the top of the picture, once more a turn on where it crosses the
 // seam.
-void draw_trunk(cv::Mat3b& canvas, const PanoramaGeometry& panorama, const Tree& tree) {
-  const double centre = panorama.column_of_bearing(tree.bearing);
-  const double half = tree.angular_width * panorama.focal() / 2;
-  const double foot = panorama.row_of_tangent(std::tan(tree.base_elevation));
-  const Colour colour = colour_of_score(tree.score);
+void draw_trunk(cv::Mat3b& canvas, const PanoramaGeometry& panorama, const TrunkMark& mark) {
+  const double centre = panorama.column_of_bearing(mark.bearing);
+  const double half = mark.angular_width * panorama.focal() / 2;
+  const double foot = panorama.row_of_tangent(std::tan(mark.base_elevation));
   for (const double turn : {-1, 0, 1}) {
     const double column = centre + turn * panorama.columns;
     if (column + half < 0 || column - half > panorama.width - 1) continue;
     draw_line(canvas,
               {at(column - half, -2), at(column - half, foot), at(column + half, foot),
                at(column + half, -2)},
-              colour, 2, true);
+              mark.colour, 2, true);
   }
 }
 
-void draw_numbers(Labels& labels, const PanoramaGeometry& panorama, const Tree& tree) {
-  const double column = panorama.column_of_bearing(tree.bearing);
-  const double foot = panorama.row_of_tangent(std::tan(tree.base_elevation));
-  labels.add(fixed(tree.score, 2), at(column, foot + 10), colour_of_score(tree.score), 0.42);
-  labels.add(fixed(tree.range, 1) + " m", at(column, foot + 20), {255, 255, 255}, 0.42);
+void draw_labels(Labels& labels, const PanoramaGeometry& panorama, const TrunkMark& mark) {
+  const double column = panorama.column_of_bearing(mark.bearing);
+  double row = panorama.row_of_tangent(std::tan(mark.base_elevation));
+  for (const std::string& text : mark.labels) {
+    row += 10;
+    labels.add(text, at(column, row), mark.colour, 0.42);
+  }
 }
 
 }  // namespace
 
+TrunkMark mark_of(const Tree& tree) {
+  return {tree.bearing,
+          tree.angular_width,
+          tree.base_elevation,
+          colour_of_score(tree.score),
+          {fixed(tree.score, 2), fixed(tree.range, 1) + " m"}};
+}
+
 cv::Mat3b draw_panorama(const Camera& camera, const WarpTable& table, const cv::Mat3b& picture,
-                        std::span<const Tree> trees) {
+                        std::span<const TrunkMark> marks) {
   const PanoramaGeometry& panorama = table.panorama();
   cv::Mat3b canvas = colour_panorama(table, picture, kScale);
   darken_unseen(canvas, table);
   Labels labels(canvas);
   draw_depths(canvas, labels, panorama, camera);
-  for (const Tree& tree : trees) draw_trunk(canvas, panorama, tree);
-  for (const Tree& tree : trees) draw_numbers(labels, panorama, tree);
+  for (const TrunkMark& mark : marks) draw_trunk(canvas, panorama, mark);
+  for (const TrunkMark& mark : marks) draw_labels(labels, panorama, mark);
   return canvas;
 }
 

@@ -37,6 +37,9 @@ struct RecallPrecision {
 };
 std::vector<RecallPrecision> precision_curve(const std::vector<Event>& events, int wanted);
 
+/// The middle of `values`, the mean of the two middle ones of an even number; none of none.
+std::optional<double> median(std::vector<double> values);
+
 /// As score.py prints them: one line of JSON, fractions rounded to four digits.
 std::string to_json(const Figures& figures);
 

@@ -1,5 +1,6 @@
 #include "evaluate/image_detector.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include <opencv2/imgcodecs.hpp>
@@ -8,6 +9,11 @@
 #include "warp/table_cache.h"
 
 namespace bole {
+namespace {
+
+constexpr float kLeastScore = 0.05F;
+
+}  // namespace
 
 cv::Mat3b read_picture(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) throw std::runtime_error("is not there");
@@ -36,6 +42,13 @@ PanoramaView ImageDetector::warp(const cv::Mat3b& picture) {
   return warper_.warp({PixelFormat::bgr24,
                        {picture.cols, picture.rows},
                        {Plane{bytes, static_cast<int>(picture.step)}, Plane{}}});
+}
+
+std::span<const Tree> ImageDetector::detect(const cv::Mat3b& picture) {
+  const std::span<const Tree> trees = detector_->detect(warp(picture));
+  const auto end = std::find_if(trees.begin(), trees.end(),
+                                [](const Tree& tree) { return tree.score < kLeastScore; });
+  return trees.first(static_cast<std::size_t>(end - trees.begin()));
 }
 
 cv::Mat3b colour_panorama(const WarpTable& table, const cv::Mat3b& picture, double scale) {

@@ -30,10 +30,8 @@ class ImageDetector {
   /// the calibration's.
   PanoramaView warp(const cv::Mat3b& picture);
 
-  /// The picture's trees, best score first, until the next call.
-  std::span<const Tree> detect(const cv::Mat3b& picture) {
-    return detector_->detect(warp(picture));
-  }
+  /// The picture's trees with a score of 0.05 or more, best first, until the next call.
+  std::span<const Tree> detect(const cv::Mat3b& picture);
 
  private:
   Camera camera_;

@@ -47,6 +47,8 @@ Truth parse_truth(const std::string& text, const std::string& file) {
     for (const json& value : root.at("frames")) {
       TruthFrame& frame = truth.frames.emplace_back();
       frame.file = value.at("file");
+      frame.utime = value.value("utime", std::int64_t{0});
+      frame.world = value.value("world", 0);
       frame.exhaustive = value.value("exhaustive", true);
       for (const json& tree : value.at("trees")) frame.trees.push_back(tree_of(tree));
       frame.metric = metric(frame, root);

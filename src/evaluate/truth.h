@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -20,6 +21,8 @@ struct TruthTree {
 
 struct TruthFrame {
   std::string file;
+  std::int64_t utime = 0;  ///< microseconds; of frames of a drive
+  int world = 0;           ///< frames of one world follow each other
   bool exhaustive = true;  ///< every trunk is marked; else only recall counts
   /// Trees are judged by position; else by bearing alone.
   bool metric = false;

@@ -1,0 +1,109 @@
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "base/errors.h"
+#include "commands/commands.h"
+#include "commands/progress.h"
+#include "detect/tracker.h"
+#include "evaluate/evaluation_plots.h"
+
+namespace bole {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string camera, truth, folder, plots;
+  double min_score = 0.5;
+  bool json = false;
+};
+
+// What one detector makes of a folder's frames: each by itself, and along the drive.
+struct Run {
+  Detections detections, tracked;
+};
+
+// Ids of the frame's trees that are published; the others do not enter the tracks.
+class DriveTracker {
+ public:
+  std::vector<Tree> update(const TruthFrame& frame, std::vector<Tree> trees, double min_score) {
+    std::erase_if(trees, [&](const Tree& tree) { return tree.score < min_score; });
+    if (frame.world != world_ || frame.utime <= utime_) tracker_.reset();
+    tracker_.update(trees, static_cast<double>(frame.utime - utime_) * 1e-6);
+    world_ = frame.world;
+    utime_ = frame.utime;
+    return trees;
+  }
+
+ private:
+  Tracker tracker_;
+  int world_ = -1;
+  std::int64_t utime_ = 0;
+};
+
+Run run(ImageDetector& detector, const Truth& truth, const Options& options) {
+  Run result;
+  DriveTracker tracker;
+  int done = 0;
+  for (const TruthFrame& frame : truth.frames) {
+    const fs::path file = fs::path(options.folder) / frame.file;
+    try {
+      const std::span<const Tree> trees = detector.detect(read_picture(file));
+      result.detections[frame.file].assign(trees.begin(), trees.end());
+      result.tracked[frame.file] =
+          tracker.update(frame, result.detections[frame.file], options.min_score);
+    } catch (const std::runtime_error& error) {
+      throw ConfigError(file.string(), "", error.what(), "every frame of the truth is needed");
+    }
+    show_progress(++done, static_cast<int>(truth.frames.size()));
+  }
+  return result;
+}
+
+void eval(const Options& options) {
+  const Truth truth = read_truth(options.truth);
+  if (truth.frames.empty()) throw ConfigError(options.truth, "frames", "is empty", "");
+  ImageDetector ours(options.camera, DetectorMode::bole);
+  ImageDetector paper(options.camera, DetectorMode::paper);
+  const Run our_run = run(ours, truth, options), paper_run = run(paper, truth, options);
+  const auto evaluated = [&](const Run& r) {
+    return evaluate(truth, r.detections, r.tracked, ours.table().panorama(), options.min_score);
+  };
+  const Evaluation our_figures = evaluated(our_run), paper_figures = evaluated(paper_run);
+  if (options.json) {
+    std::printf("{\"bole\":%s,\"paper\":%s}\n", to_json(our_figures).c_str(),
+                to_json(paper_figures).c_str());
+  } else {
+    std::puts(to_table({{"bole", our_figures}, {"paper", paper_figures}}).c_str());
+  }
+  if (options.plots.empty()) return;
+  write_plots(options.plots, truth, options.min_score,
+              {{"bole", kOurs, &our_figures, &our_run.detections},
+               {"paper", kPaper, &paper_figures, &paper_run.detections}});
+  write_worst_frames(options.plots, truth, options.folder, our_run.detections, options.min_score,
+                     ours.camera(), ours.table());
+}
+
+}  // namespace
+
+void add_eval(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "eval", "Measure both detectors against marked frames, as tools/score.py does");
+  command->add_option("--camera", options->camera, "camera.toml of the camera that took them")
+      ->required();
+  command->add_option("--truth", options->truth, "truth.json")->required();
+  command->add_option("--plots", options->plots,
+                      "folder for the curves and the ten worst frames, as PNG");
+  command
+      ->add_option("--min-score", options->min_score,
+                   "the score from which on a tree counts; AP is over all")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command->add_flag("--json", options->json, "one line of JSON");
+  command->add_option("DIR", options->folder, "folder of the frames")->required();
+  command->callback([options] { eval(*options); });
+}
+
+}  // namespace bole
