@@ -79,7 +79,9 @@ Picture averaged(const Picture& picture, int radius) {
   for (int k = 0; k < 3; ++k) {
     for (int row = 0; row < height; ++row)
       pass(3 * static_cast<std::ptrdiff_t>(row) * width + k, 3, width);
-    for (int column = 0; column < width; ++column) pass(3 * column + k, 3 * width, height);
+    for (int column = 0; column < width; ++column)
+      pass(3 * static_cast<std::ptrdiff_t>(column) + k, 3 * static_cast<std::ptrdiff_t>(width),
+           height);
   }
   return result;
 }

@@ -50,6 +50,7 @@ std::vector<double> fit(const std::vector<double>& x, const std::vector<double>&
     }
   }
   std::vector<double> result;
+  result.reserve(n);
   for (std::size_t i = 0; i < n; ++i) result.push_back(rows[i][n] / rows[i][i]);
   return result;
 }
@@ -73,6 +74,7 @@ std::vector<double> fisheye_polynomial(double rim, double flattest) {
   const double angle_per_radius = (kPi / 2 + flattest) / rim;
   const std::vector<double> radii = steps(0.05, 1.02, 60);
   std::vector<double> f;
+  f.reserve(radii.size());
   for (const double r : radii) f.push_back(-r / std::tan(r * rim * angle_per_radius));
   const std::vector<double> scaled = fit(radii, f, {0, 2, 3, 4});
   return {scaled[0] * rim, 0, scaled[1] / rim, scaled[2] / (rim * rim),

@@ -150,6 +150,7 @@ void record(const std::filesystem::path& folder, const Camera& camera,
           ? 1
           : static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 8U));
   std::vector<std::future<void>> workers;
+  workers.reserve(static_cast<std::size_t>(threads));
   for (int i = 0; i < std::min(threads, options.frames); ++i) {
     workers.push_back(std::async(std::launch::async, render, i, threads));
   }

@@ -192,7 +192,8 @@ Colour Surfaces::backdrop(const Ray& ray) const {
   const std::uint32_t seed = world_.seed;
   const float profile = look_.backdrop_top * (1 + 0.5F * noise(ray.dx * 4, ray.dy * 4, seed + 202) +
                                               0.2F * noise(ray.dx * 21, ray.dy * 21, seed + 203));
-  if (t > profile * 1.3F + 0.05F) return sky(ray, height);
+  const float air = std::exp(-look_.fog * 45 * (1 - 0.6F * std::max(0.0F, height)));
+  if (t > profile * 1.3F + 0.05F) return mix(look_.haze, sky(ray, height), air);
   const float pixel = ray.pixel;
   const float bearing = std::atan2(ray.dy, ray.dx);
   const float boughs = fractal(bearing, t, 5, 5, 0.8F, pixel, seed + 204);
@@ -214,7 +215,7 @@ Colour Surfaces::backdrop(const Ray& ray) const {
     stems(bearing, ray, behind);
     colour = mix(behind, colour, front);
   }
-  return mix(look_.haze, colour, std::exp(-look_.fog * 45 * (1 - 0.6F * std::max(0.0F, height))));
+  return mix(look_.haze, colour, air);
 }
 
 }  // namespace bole::simulate

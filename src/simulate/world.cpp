@@ -81,8 +81,12 @@ class Gardener {
         mix(options_.diameter.low, options_.diameter.high, 0.35F), options_.diameter.high);
     const float cell = 100 / std::sqrt(per_ha * 1.6F);
     const std::uint32_t clumps = random_.bits();
-    for (float y = y0_; y < y1_; y += cell) {
-      for (float x = x0_; x < x1_; x += cell) {
+    const int rows = static_cast<int>((y1_ - y0_) / cell) + 1;
+    const int columns = static_cast<int>((x1_ - x0_) / cell) + 1;
+    for (int row = 0; row < rows; ++row) {
+      for (int column = 0; column < columns; ++column) {
+        const float x = x0_ + cell * static_cast<float>(column);
+        const float y = y0_ + cell * static_cast<float>(row);
         const float density = 0.625F * (1 + 0.6F * noise(x / 9, y / 9, clumps));
         const float at_x = x + cell * random_.uniform(0, 1);
         const float at_y = y + cell * random_.uniform(0, 1);
@@ -296,7 +300,7 @@ class Gardener {
   }
 
   void raise_walls() {
-    const int walls = static_cast<int>(draw(random_, options_.walls) + 0.5F);
+    const int walls = static_cast<int>(std::lround(draw(random_, options_.walls)));
     for (int i = 0; i < walls; ++i) {
       Wall wall;
       float x = 0, y = 0;
