@@ -16,18 +16,9 @@ struct Options {
   std::vector<bole::Setting> settings;
 };
 
-std::string quoted(const std::string& text) {
-  std::string toml = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') toml += '\\';
-    toml += c;
-  }
-  return toml + '"';
-}
-
 std::string list_of(const std::vector<std::string>& texts) {
   std::string toml;
-  for (const std::string& text : texts) toml += (toml.empty() ? "" : ", ") + quoted(text);
+  for (const std::string& text : texts) toml += (toml.empty() ? "" : ", ") + bole::toml_text(text);
   return "[" + toml + "]";
 }
 
@@ -36,7 +27,7 @@ void add_options(CLI::App& app, Options& options) {
     app.add_option_function<std::string>(
         option,
         [&options, key](const std::string& value) {
-          options.settings.push_back({key, quoted(value)});
+          options.settings.push_back({key, bole::toml_text(value)});
         },
         help);
   };

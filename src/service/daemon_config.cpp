@@ -148,6 +148,15 @@ Setting parse_setting(std::string_view text) {
   return {std::string(text.substr(0, equals)), std::string(text.substr(equals + 1))};
 }
 
+std::string toml_text(std::string_view text) {
+  std::string toml = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') toml += '\\';
+    toml += c;
+  }
+  return toml + '"';
+}
+
 DaemonConfig load_daemon_config(const std::optional<std::filesystem::path>& file,
                                 const std::vector<Setting>& settings) {
   std::string origin = file ? file->string() : "command line";

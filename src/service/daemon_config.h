@@ -76,6 +76,8 @@ struct Setting {
 };
 /// Throws ConfigError when there is no "=" or no key.
 Setting parse_setting(std::string_view text);
+/// `text` as a string of TOML, for a setting that is never anything else.
+std::string toml_text(std::string_view text);
 
 /// Reads `file` (none: the defaults) and lays the settings over it, the later over the earlier.
 /// Throws ConfigError for unknown keys and for whatever is not as it must be.

@@ -1,5 +1,7 @@
 #include "capture/replay/image_file.h"
 
+#include <algorithm>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -13,6 +15,18 @@ namespace {
 
 std::string shown(ImageSize size) {
   return std::to_string(size.width) + " x " + std::to_string(size.height);
+}
+
+// True when `file` begins as a kind of image does that we decode. OpenCV would hand anything else
+// on to every reader it was built with, down to those of maps and satellite pictures.
+bool is_known_image(std::span<const std::byte> file) {
+  const std::string_view head(reinterpret_cast<const char*>(file.data()),
+                              std::min<std::size_t>(file.size(), 12));
+  const bool webp = head.starts_with("RIFF") && head.ends_with("WEBP");
+  const bool netpbm = head.size() > 2 && head[0] == 'P' && head[1] >= '1' && head[1] <= '6';
+  return webp || netpbm || head.starts_with("\x89PNG") || head.starts_with("BM") ||
+         head.starts_with(std::string_view("II*\0", 4)) ||
+         head.starts_with(std::string_view("MM\0*", 4));
 }
 
 }  // namespace
@@ -44,6 +58,7 @@ void ImageReader::read(const std::filesystem::path& path, FrameSlot& slot) {
     decode_jpeg(file_, wanted_, slot);
     return;
   }
+  if (!is_known_image(file_)) throw UnreadableFrame("is no image");
   std::string problem;
   try {
     problem = replay_codecs().decode_image(file_, slot);
