@@ -24,3 +24,10 @@ function(bole_library name)
   target_link_libraries(${name} PRIVATE bole_options)
   target_include_directories(${name} PUBLIC "${CMAKE_SOURCE_DIR}/src")
 endfunction()
+
+# bole_core_library(name sources...): the same, for what finds trees: without fused multiply-adds of
+# the compiler's own, which round differently, so that all processors find the same.
+function(bole_core_library name)
+  bole_library(${name} ${ARGN})
+  target_compile_options(${name} PRIVATE -ffp-contract=off)
+endfunction()

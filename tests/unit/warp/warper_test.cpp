@@ -6,9 +6,8 @@
 #include <algorithm>
 #include <random>
 
-#include <hwy/highway.h>
-
 #include "support/guarded_buffer.h"
+#include "support/vector_targets.h"
 #include "unit/warp/test_cameras.h"
 #include "warp/bad_frame.h"
 
@@ -42,19 +41,6 @@ Panorama plain_warp(const WarpTable& table, const SampledImage& image) {
   return copy_of({&table.panorama(), buffer.data(), stride});
 }
 
-// Every instruction set of this machine in turn.
-template <class Check>
-void for_each_target(Check check) {
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    check();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-}
-
 // A camera that sees its whole image, to the last pixel of each border.
 std::filesystem::path write_wide_pinhole(const TempFolder& folder) {
   return folder.write("wide.toml", R"(
@@ -85,7 +71,9 @@ TEST(Warper, KernelsEqualThePlainOneInEveryFormatAndTouchNothingOutside) {
         const auto image = view_packed(format, table.image_size(), buffer.bytes());
         ASSERT_TRUE(image);
         const Panorama expected = plain_warp(table, warper.open(*image));
-        for_each_target([&] { EXPECT_EQ(copy_of(warper.warp(*image)), expected); });
+        for_each_vector_target([&](const char* target) {
+          EXPECT_EQ(copy_of(warper.warp(*image)), expected) << target;
+        });
       }
     }
   }
