@@ -25,7 +25,7 @@ double tick_step(const Axis& axis, int most) {
 std::vector<double> ticks(const Axis& axis, double step) {
   std::vector<double> values;
   for (double k = std::ceil(axis.low / step - 1e-9); k * step <= axis.high + 1e-9 * step; ++k) {
-    values.push_back(k * step);
+    values.push_back(k * step + 0.0);  // no minus before zero
   }
   return values;
 }
