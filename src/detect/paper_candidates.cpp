@@ -7,6 +7,15 @@
 namespace bole {
 namespace {
 
+// Minima below the threshold are rare: whole blocks of columns are ruled out at once.
+constexpr int kBlock = 32;
+
+bool any_below(const float* scores, float threshold) {
+  unsigned below = 0;
+  for (int j = 0; j < kBlock; ++j) below |= scores[j] < threshold ? 1U : 0U;
+  return below != 0;
+}
+
 // Keeps, best first, those that no better kept candidate rivals.
 template <class Rivals>
 void keep_best(std::vector<PaperCandidate>& candidates, const Rivals& rivals) {
@@ -23,12 +32,16 @@ void keep_best(std::vector<PaperCandidate>& candidates, const Rivals& rivals) {
 void append_minima(std::span<const float> scores, float threshold, bool wraps, int index,
                    std::vector<PaperCandidate>& candidates) {
   const int width = static_cast<int>(scores.size());
-  for (int j = 0; j < width; ++j) {
-    if (!(scores[j] < threshold)) continue;
-    const int left = j > 0 ? j - 1 : wraps ? width - 1 : 0;
-    const int right = j + 1 < width ? j + 1 : wraps ? 0 : j;
-    const bool below_left = scores[j] < scores[left] || left == j;
-    if (below_left && scores[j] <= scores[right]) candidates.push_back({j, index, scores[j]});
+  for (int block = 0; block < width; block += kBlock) {
+    const int end = std::min(block + kBlock, width);
+    if (end - block == kBlock && !any_below(&scores[block], threshold)) continue;
+    for (int j = block; j < end; ++j) {
+      if (!(scores[j] < threshold)) continue;
+      const int left = j > 0 ? j - 1 : wraps ? width - 1 : 0;
+      const int right = j + 1 < width ? j + 1 : wraps ? 0 : j;
+      const bool below_left = scores[j] < scores[left] || left == j;
+      if (below_left && scores[j] <= scores[right]) candidates.push_back({j, index, scores[j]});
+    }
   }
 }
 

@@ -35,29 +35,36 @@ void WeightRows(const std::uint32_t* HWY_RESTRICT bottom, const std::uint32_t* H
 // Vectors of columns that are filtered together; loops run over whole blocks, into the margin.
 constexpr int kBlock = 4;
 
-// out = sum over x of profile[|x|] in[. + x].
+// out = sum over x from 0 to reach of profile[x] (in[. - x] + in[. + x]).
+//
+// Offsets that are a whole number of vectors apart use the same vectors of the input for
+// neighbouring columns: taken one after the other, they need one new vector on each side in place
+// of four.
 void FilterRow(const float* HWY_RESTRICT in, int width, const float* HWY_RESTRICT profile,
                int reach, float* HWY_RESTRICT out) {
   const hn::ScalableTag<float> d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   for (int j = 0; j < width; j += kBlock * lanes) {
-    const float* centre = in + j;
-    const auto middle = hn::Set(d, profile[0]);
-    auto a = hn::Mul(middle, hn::LoadU(d, centre));
-    auto b = hn::Mul(middle, hn::LoadU(d, centre + lanes));
-    auto c = hn::Mul(middle, hn::LoadU(d, centre + 2 * lanes));
-    auto e = hn::Mul(middle, hn::LoadU(d, centre + 3 * lanes));
-    for (int x = 1; x <= reach; ++x) {
-      const auto weight = hn::Set(d, profile[x]);
-      const float* left = centre - x;
-      const float* right = centre + x;
-      const auto both = [&](int at) {
-        return hn::Add(hn::LoadU(d, left + at), hn::LoadU(d, right + at));
-      };
-      a = hn::MulAdd(weight, both(0), a);
-      b = hn::MulAdd(weight, both(lanes), b);
-      c = hn::MulAdd(weight, both(2 * lanes), c);
-      e = hn::MulAdd(weight, both(3 * lanes), e);
+    auto a = hn::Zero(d), b = hn::Zero(d), c = hn::Zero(d), e = hn::Zero(d);
+    for (int first = 0; first < lanes && first <= reach; ++first) {
+      const float* left = in + j - first;
+      const float* right = in + j + first;
+      auto left_a = hn::LoadU(d, left), left_b = hn::LoadU(d, left + lanes);
+      auto left_c = hn::LoadU(d, left + 2 * lanes), left_e = hn::LoadU(d, left + 3 * lanes);
+      auto right_a = hn::LoadU(d, right), right_b = hn::LoadU(d, right + lanes);
+      auto right_c = hn::LoadU(d, right + 2 * lanes), right_e = hn::LoadU(d, right + 3 * lanes);
+      for (int x = first;;) {
+        const auto weight = hn::Set(d, profile[x]);
+        a = hn::MulAdd(weight, hn::Add(left_a, right_a), a);
+        b = hn::MulAdd(weight, hn::Add(left_b, right_b), b);
+        c = hn::MulAdd(weight, hn::Add(left_c, right_c), c);
+        e = hn::MulAdd(weight, hn::Add(left_e, right_e), e);
+        x += lanes;
+        if (x > reach) break;
+        left_e = left_c, left_c = left_b, left_b = left_a, left_a = hn::LoadU(d, in + j - x);
+        right_a = right_b, right_b = right_c, right_c = right_e;
+        right_e = hn::LoadU(d, in + j + x + 3 * lanes);
+      }
     }
     hn::StoreU(a, d, out + j);
     hn::StoreU(b, d, out + j + lanes);
@@ -91,11 +98,13 @@ int largest_reach(const std::vector<PaperTemplate>& templates) {
   return reach;
 }
 
+// The bar's profile over s^2 n a, its middle halved: FilterRow counts it on both sides.
 std::vector<float> profile_of(const PaperTemplate& t) {
   const double n = t.foot_row + 1;
   const double scale = 1 / (t.width_px * t.width_px * n * t.foot_distance);
   std::vector<float> profile;
   for (const float value : t.bar) profile.push_back(static_cast<float>(value * scale));
+  profile[0] /= 2;
   return profile;
 }
 
