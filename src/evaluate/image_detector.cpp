@@ -1,11 +1,10 @@
 #include "evaluate/image_detector.h"
 
 #include <algorithm>
-#include <stdexcept>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "capture/replay/image_file.h"
 #include "warp/table_cache.h"
 
 namespace bole {
@@ -16,15 +15,18 @@ constexpr float kLeastScore = 0.05F;
 }  // namespace
 
 cv::Mat3b read_picture(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) throw std::runtime_error("is not there");
-  if (!std::filesystem::is_regular_file(file)) throw std::runtime_error("is not a file");
-  try {
-    const cv::Mat picture =
-        cv::imread(file.string(), cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
-    if (!picture.empty()) return picture;
-  } catch (const cv::Exception&) {  // too large
+  FrameSlot slot;
+  ImageReader().read(file, slot);
+  const bool grey = slot.format == PixelFormat::grey;
+  const cv::Mat stored(slot.size.height, slot.size.width, grey ? CV_8UC1 : CV_8UC3,
+                       slot.bytes.data());
+  cv::Mat3b picture;
+  if (grey) {
+    cv::cvtColor(stored, picture, cv::COLOR_GRAY2BGR);
+  } else {
+    stored.copyTo(picture);
   }
-  throw std::runtime_error("is no picture that can be read");
+  return picture;
 }
 
 ImageDetector::ImageDetector(const std::filesystem::path& camera_toml, DetectorMode mode)

@@ -11,7 +11,8 @@
 
 namespace bole {
 
-/// A picture as 8-bit BGR. Throws std::runtime_error when it is missing or no picture.
+/// A picture as 8-bit BGR, read as replay reads it. Throws std::runtime_error when it is missing,
+/// damaged or no picture.
 cv::Mat3b read_picture(const std::filesystem::path& file);
 
 /// From a picture to its trees, with one camera and one detector: each picture by itself.

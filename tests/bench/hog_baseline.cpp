@@ -4,7 +4,8 @@
 //
 // usage: hog_baseline TRAIN_CAMERA.toml TRAIN_DIR TEST_CAMERA.toml TEST_DIR
 //
-// Each folder holds frames and their truth.json. Prints the figures of the test frames at a score
+// Each folder holds frames and their truth.json. A score of 0.5 is the threshold with the best F1
+// on the frames that it learnt from. Prints the figures of the test frames at a score
 // of 0.5, as tools/score.py names them, and the average precision over all scores.
 #include <algorithm>
 #include <cmath>
@@ -31,6 +32,7 @@ constexpr double kEnlarged = 3;   // the smallest window, 64 pixels, then holds 
 constexpr int kPatches = 16;      // of background, from each frame
 constexpr int kMostTrunks = 700;  // to learn from
 constexpr double kLeastMargin = -0.6;
+constexpr std::size_t kFramesForThreshold = 20;
 
 // A frame's green panorama, its ends repeated behind the seam.
 class Panorama {
@@ -132,13 +134,18 @@ std::vector<float> train(const Samples& samples) {
   return plane;
 }
 
-std::vector<Tree> detect(const cv::HOGDescriptor& hog, const Panorama& panorama,
-                         const Camera& camera) {
+// What was learnt: where the plane lies, and how far from it a window is a trunk.
+struct Hog {
+  cv::HOGDescriptor descriptor;
+  double threshold = 0;
+};
+
+std::vector<Tree> detect(const Hog& hog, const Panorama& panorama, const Camera& camera) {
   cv::Mat1b enlarged;
   cv::resize(panorama.pixels(), enlarged, {}, kEnlarged, kEnlarged, cv::INTER_LINEAR);
   std::vector<cv::Rect> windows;
   std::vector<double> margins;
-  hog.detectMultiScale(enlarged, windows, margins, kLeastMargin, {8, 8}, {0, 0}, 1.1, 0);
+  hog.descriptor.detectMultiScale(enlarged, windows, margins, kLeastMargin, {8, 8}, {0, 0}, 1.1, 0);
   std::vector<Tree> trees;
   const Search& search = camera.config.search;
   for (std::size_t k = 0; k < windows.size(); ++k) {
@@ -150,7 +157,7 @@ std::vector<Tree> detect(const cv::HOGDescriptor& hog, const Panorama& panorama,
         tree->diameter > search.diameter.high * 1.25) {
       continue;
     }
-    tree->score = static_cast<float>(1 / (1 + std::exp(-3 * margins[k])));
+    tree->score = static_cast<float>(1 / (1 + std::exp(-3 * (margins[k] - hog.threshold))));
     trees.push_back(*tree);
   }
   // Best first; what stands in a better one's bearing goes.
@@ -167,29 +174,49 @@ std::vector<Tree> detect(const cv::HOGDescriptor& hog, const Panorama& panorama,
   return kept;
 }
 
-cv::HOGDescriptor learn(const fs::path& camera, const fs::path& folder) {
-  cv::HOGDescriptor hog;
-  ImageDetector images(camera, DetectorMode::paper);
-  const Truth truth = read_truth(folder / "truth.json");
-  Samples samples;
-  cv::RNG rng(1);
-  for (const TruthFrame& frame : truth.frames) {
-    if (samples.trunks >= kMostTrunks) break;
-    add_frame(samples, hog, Panorama(images, folder / frame.file), frame, truth.height, rng);
-  }
-  std::fprintf(stderr, "learning from %d trunks and %d patches of background\n", samples.trunks,
-               samples.labels.rows - samples.trunks);
-  hog.setSVMDetector(train(samples));
-  return hog;
-}
-
-void measure_on(const cv::HOGDescriptor& hog, const fs::path& camera, const fs::path& folder) {
-  ImageDetector images(camera, DetectorMode::paper);
-  const Truth truth = read_truth(folder / "truth.json");
+Detections detect_in(const Hog& hog, ImageDetector& images, const fs::path& folder,
+                     const Truth& truth) {
   Detections detections;
   for (const TruthFrame& frame : truth.frames) {
     detections[frame.file] = detect(hog, Panorama(images, folder / frame.file), images.camera());
   }
+  return detections;
+}
+
+// The threshold with the best F1 on the frames of a folder.
+double best_threshold(const Hog& hog, ImageDetector& images, const fs::path& folder, Truth truth) {
+  truth.frames.resize(std::min<std::size_t>(truth.frames.size(), kFramesForThreshold));
+  const Detections detections = detect_in(hog, images, folder, truth);
+  double best_f1 = 0, best = 0;
+  for (double threshold = kLeastMargin; threshold < 2; threshold += 0.02) {
+    const double f1 = measure(truth, detections, 1 / (1 + std::exp(-3 * threshold))).f1;
+    if (f1 > best_f1) best_f1 = f1, best = threshold;
+  }
+  return best;
+}
+
+Hog learn(const fs::path& camera, const fs::path& folder) {
+  ImageDetector images(camera, DetectorMode::paper);
+  const Truth truth = read_truth(folder / "truth.json");
+  Hog hog;
+  Samples samples;
+  cv::RNG rng(1);
+  for (const TruthFrame& frame : truth.frames) {
+    if (samples.trunks >= kMostTrunks) break;
+    add_frame(samples, hog.descriptor, Panorama(images, folder / frame.file), frame, truth.height,
+              rng);
+  }
+  hog.descriptor.setSVMDetector(train(samples));
+  hog.threshold = best_threshold(hog, images, folder, truth);
+  std::fprintf(stderr, "learnt from %d trunks and %d patches of background, threshold %.2f\n",
+               samples.trunks, samples.labels.rows - samples.trunks, hog.threshold);
+  return hog;
+}
+
+void measure_on(const Hog& hog, const fs::path& camera, const fs::path& folder) {
+  ImageDetector images(camera, DetectorMode::paper);
+  const Truth truth = read_truth(folder / "truth.json");
+  const Detections detections = detect_in(hog, images, folder, truth);
   auto json = nlohmann::ordered_json::parse(to_json(measure(truth, detections, 0.5)));
   json["ap_of_all"] = measure(truth, detections, 0).ap;
   std::puts(json.dump().c_str());
