@@ -1,5 +1,6 @@
 // The plug-in bole_replay_codecs.so: OpenCV's decoders behind ReplayCodecs.
 #include <cstring>
+#include <exception>
 
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -26,7 +27,17 @@ std::string fill(const cv::Mat& image, FrameSlot& slot) {
   return "";
 }
 
-std::string one_line(const cv::Exception& error) { return "cannot be decoded: " + error.err; }
+// Runs `decode`, which returns what is wrong, and turns what it throws into the same.
+template <class Decode>
+std::string guarded(Decode decode) {
+  try {
+    return decode();
+  } catch (const cv::Exception& error) {
+    return "cannot be decoded: " + error.err;
+  } catch (const std::exception& error) {
+    return std::string("cannot be decoded: ") + error.what();
+  }
+}
 
 class OpencvVideo : public VideoReader {
  public:
@@ -40,12 +51,10 @@ class OpencvVideo : public VideoReader {
   double rate_hz() const override { return capture_.get(cv::CAP_PROP_FPS); }
   bool step() override { return capture_.grab(); }
   std::string decode(FrameSlot& slot) override {
-    try {
+    return guarded([&]() -> std::string {
       if (!capture_.retrieve(image_)) return "has a frame that cannot be decoded";
       return fill(image_, slot);
-    } catch (const cv::Exception& error) {
-      return one_line(error);
-    }
+    });
   }
 
  private:
@@ -58,13 +67,11 @@ class OpencvCodecs : public ReplayCodecs {
   OpencvCodecs() { cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT); }
 
   std::string decode_image(std::span<const std::byte> file, FrameSlot& slot) const override {
-    try {
+    return guarded([&] {
       const cv::Mat bytes(1, static_cast<int>(file.size()), CV_8UC1,
                           const_cast<std::byte*>(file.data()));
       return fill(cv::imdecode(bytes, cv::IMREAD_ANYCOLOR | cv::IMREAD_IGNORE_ORIENTATION), slot);
-    } catch (const cv::Exception& error) {
-      return one_line(error);
-    }
+    });
   }
 
   std::unique_ptr<VideoReader> open_video(const std::filesystem::path& path) const override {

@@ -19,12 +19,17 @@ namespace fs = std::filesystem;
 struct FrameFile {
   fs::path path;
   std::string name;
+  std::optional<PixelFormat> raw;  // none: an image
   std::int64_t utime_us = 0;
 };
 
 std::optional<PixelFormat> raw_format(const fs::path& path) {
   const std::optional<PixelFormat> format = pixel_format_from_name(lower_ending(path));
   return format == PixelFormat::mjpeg ? std::nullopt : format;  // a stream of many: a video
+}
+
+FrameFile frame_file(const fs::path& path) {
+  return {path, path.filename().string(), raw_format(path)};
 }
 
 bool is_frame_name(const fs::path& path) {
@@ -48,7 +53,7 @@ std::vector<FrameFile> list_folder(const ReplayOptions& options) {
     const fs::path& path = entry->path();
     std::error_code vanished;
     if (is_frame_name(path) && !is_mask(path, options.mask) && !fs::is_directory(path, vanished)) {
-      files.push_back({path, path.filename().string(), 0});
+      files.push_back(frame_file(path));
     }
   }
   if (error) {
@@ -112,9 +117,8 @@ class FileMedia : public ReplayMedia {
   void read(FrameSlot& slot) override {
     const FrameFile& file = files_.at(next_++);
     try {
-      const std::optional<PixelFormat> raw = raw_format(file.path);
-      if (raw) {
-        read_raw(file.path, *raw, slot);
+      if (file.raw) {
+        read_raw(file.path, *file.raw, slot);
       } else {
         images_.read(file.path, slot);
       }
@@ -160,7 +164,7 @@ std::vector<FrameFile> list_files(const ReplayOptions& options) {
                         "give an image (png, jpg ...), a raw frame (yuyv, nv12, grey ...) or a "
                         "video (mp4, avi ...)");
     }
-    return {{options.path, options.path.filename().string(), 0}};
+    return {frame_file(options.path)};
   }
   std::vector<FrameFile> files = list_folder(options);
   const fs::path table = options.path / "timestamps.csv";
