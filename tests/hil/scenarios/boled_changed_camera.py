@@ -49,7 +49,7 @@ def refuses_a_control():
     with Camera([mode]) as camera, Listener() as listener:
         camera.command("refuse gain")
         camera.plug()
-        with Boled(f"v4l2:{camera.link}", SIZE, "source.controls.gain=77") as boled:
+        with Boled(f"v4l2:{camera.link}", SIZE, "source.gain=77") as boled:
             camera.wait_for_event("control_refused", 30, name="gain", value=77)
             listener.wait_for_list(30)
             expect(len(boled.log_lines("gain")), 1, "log lines about it")

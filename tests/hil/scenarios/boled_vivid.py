@@ -14,7 +14,7 @@ def run():
     trees = 0
     for fourcc, multiplanar in MODES:
         # One picture: vivid's two ends run freely, so its count does not tell pictures apart.
-        replayed = replayed_lists(fourcc, SIZE, 1)
+        replayed = replayed_lists(fourcc, SIZE)[:1]
         mode = frames.rendered(fourcc, SIZE, 1)
         with vivid.Loop(mode, multiplanar) as loop, Listener() as listener:
             settings = [NO_TRACKS, f'source.format="{frames.PROJECT_NAMES[fourcc]}"']

@@ -49,24 +49,23 @@ class Mode:
 
 
 def rendered(fourcc, size, count=None):
-    """A mode with the first `count` pictures of a drive through a wood (host/frames); all if None."""
+    """A mode with the first `count` rendered pictures; all if None."""
     width, height = size
     mode = Mode(fourcc, width, height,
                 environment.SCRATCH / f"rendered_{fourcc}_{width}x{height}_{count or 'all'}")
     if not mode.path.exists():
-        files = rendered_files(fourcc, size)[:count]
+        name = PROJECT_NAMES[fourcc]
+        files = sorted(rendered_folder(fourcc, size).glob(f"*.{name}"))[:count]
         mode.path.write_bytes(b"".join(file.read_bytes() for file in files))
     return mode
 
 
-def rendered_files(fourcc, size):
-    """The single pictures of rendered(), as replay reads them."""
-    name = PROJECT_NAMES[fourcc]
-    folder = environment.build("hil/frames", f"{size[0]}x{size[1]}", name)
-    files = sorted(folder.glob(f"*.{name}"))
-    if not files:
-        raise Skip(f"no rendered frames in {folder}")
-    return files
+def rendered_folder(fourcc, size):
+    """The pictures of a drive through a wood (host/frames) in this format, ready to be replayed."""
+    folder = environment.build("hil/frames", f"{size[0]}x{size[1]}", PROJECT_NAMES[fourcc])
+    if not folder.exists():
+        raise Skip(f"{folder} is not rendered")
+    return folder
 
 
 def noise(fourcc, size, count=4):
