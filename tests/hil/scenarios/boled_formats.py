@@ -35,8 +35,8 @@ def live_lists(mode, size, count, listener):
         camera.command("freeze")
         camera.plug()
         settings = [NO_TRACKS, f'source.format="{frames.PROJECT_NAMES[mode.fourcc]}"']
-        with Boled(f"v4l2:{camera.link}", size, *settings):
-            camera.wait_for_event("streaming", 60)
+        with Boled(f"v4l2:{camera.link}", size, *settings) as boled:
+            boled.wait_for_log("waiting for the first frame", 60)
             lists = []
             for _ in range(count):
                 mark = listener.mark()
