@@ -34,9 +34,11 @@ def live_lists(mode, size, count, listener):
     with Camera([mode]) as camera:
         camera.command("freeze")
         camera.plug()
+        mark = listener.mark()
         settings = [NO_TRACKS, f'source.format="{frames.PROJECT_NAMES[mode.fourcc]}"']
         with Boled(f"v4l2:{camera.link}", size, *settings) as boled:
             boled.wait_for_log("waiting for the first frame", 60)
+            listener.wait_for_state("opening", 10, mark)  # so it listens
             lists = []
             for _ in range(count):
                 mark = listener.mark()

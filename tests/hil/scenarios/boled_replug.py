@@ -38,14 +38,15 @@ def run():
 
 
 def replug(camera, listener):
-    """Seconds from pulling out to the status that says so, and from plugging in to a list."""
+    """Seconds from pulling out to the status that says so, and from the camera being there again
+    (which takes the kernel and udev a second or more in emulation) to a list."""
     with open(camera.device):  # keeps its number: the camera comes back under another
         mark = listener.mark()
         unplugged = time.monotonic()
         camera.unplug()
         outage_seen, _ = listener.wait_for_state("no camera", 10, mark)
         mark = listener.mark()
-        plugged = time.monotonic()
         camera.plug()
+        there = time.monotonic()
         back, _ = listener.wait_for_list(30, mark)
-    return outage_seen - unplugged, back - plugged
+    return outage_seen - unplugged, back - there
