@@ -7,7 +7,9 @@ from rig.replay import NO_TRACKS, expect_same_trees, replayed_lists
 SMOKE = False
 TIME_LIMIT_S = 240
 SIZE = (640, 480)
-MODES = (("RGB3", False), ("NV12", False), ("YUYV", True), ("NV12", True), ("NM12", True))
+# Whether with the multi-planar API. NM12, NV12 in two buffers, cannot be reached: where there is
+# NV12 as well, boled takes that.
+MODES = (("RGB3", False), ("NV12", False), ("YUYV", True), ("NV12", True), ("RGB3", True))
 
 
 def run():
