@@ -16,6 +16,11 @@ class CaptureError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Why there is no camera, in the same words whether it was lost or not found: one outage is told
+/// once. The camera's name comes last, in brackets, since a status has room for 80 bytes.
+inline const std::string kNotThere = "is not there";
+inline std::string in_brackets(const std::string& name) { return " (" + name + ")"; }
+
 /// What came of waiting for a frame.
 struct Grab {
   enum class Kind {

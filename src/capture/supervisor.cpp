@@ -105,6 +105,7 @@ Grab Supervisor::stream() {
       ++counts_.losses;
       wait_for_camera(grab.reason);
       grab.kind = Grab::Kind::timeout;
+      grab.reason.clear();
       break;
     case Grab::Kind::end:
     case Grab::Kind::interrupted:

@@ -98,7 +98,7 @@ class LibcameraSource : public FrameSource {
     try {
       start();
     } catch (const CaptureError& error) {
-      throw CaptureError(id_ + " " + error.what());
+      throw CaptureError(error.what() + in_brackets(id_));
     }
   }
   Grab grab(std::chrono::nanoseconds timeout) override;
@@ -141,7 +141,7 @@ class LibcameraSource : public FrameSource {
 void LibcameraSource::start() {
   if (!manager_) manager_ = camera_manager();
   auto camera = manager_->get(id_);
-  if (!camera) throw CaptureError("is not there");
+  if (!camera) throw CaptureError(kNotThere);
   Acquired acquired(std::move(camera));
   const Agreed agreed = configure(*acquired, settings_);
   refused_.clear();
@@ -210,7 +210,7 @@ void LibcameraSource::drain(Grab& grab) {
   if (!session_->gone()) return;
   grab.frame = Frame();
   grab.kind = Grab::Kind::lost;
-  grab.reason = id_ + " was unplugged";
+  grab.reason = kNotThere + in_brackets(id_);
 }
 
 void LibcameraSource::take(const LibcameraSession::Completed& completed, const ImageView& image,

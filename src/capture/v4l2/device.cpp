@@ -98,7 +98,7 @@ fs::path find_v4l2_device(const std::string& name) {
     if (error != std::errc::no_such_file_or_directory) {
       throw CaptureError("cannot be found: " + error.message());
     }
-    throw CaptureError("is not there");
+    throw CaptureError(kNotThere);
   }
   for (const char* folder : {"/dev/v4l/by-id", "/dev/v4l/by-path"}) {
     fs::path node = fs::canonical(fs::path(folder) / name, error);
@@ -107,7 +107,7 @@ fs::path find_v4l2_device(const std::string& name) {
   for (const fs::path& node : v4l2_nodes()) {
     if (!name.empty() && usb_serial(node) == name && is_first_node(node)) return node;
   }
-  throw CaptureError("is no camera's name or serial number now");
+  throw CaptureError(kNotThere);
 }
 
 std::vector<fs::path> v4l2_nodes() {

@@ -66,7 +66,7 @@ void V4l2Source::open() {
   try {
     start();
   } catch (const CaptureError& error) {
-    throw CaptureError(name_ + " " + error.what());
+    throw CaptureError(error.what() + in_brackets(name_));
   }
 }
 
@@ -137,7 +137,7 @@ Grab V4l2Source::grab(std::chrono::nanoseconds timeout) {
       drain(grab);
       if (grab.kind == Grab::Kind::timeout && (told & (POLLERR | POLLHUP)) != 0) {
         grab.kind = Grab::Kind::lost;
-        grab.reason = name_ + " reports an error";
+        grab.reason = "reports an error" + in_brackets(name_);
       }
     }
   } while (grab.kind == Grab::Kind::timeout && clock_.mono_ns() < deadline_ns);
@@ -162,7 +162,7 @@ void V4l2Source::drain(Grab& grab) {
   // What else was fetched is of a camera that is gone.
   grab.frame = Frame();
   grab.kind = Grab::Kind::lost;
-  grab.reason = name_ + (error == ENODEV ? " was unplugged" : " failed: " + error_text(error));
+  grab.reason = (error == ENODEV ? kNotThere : "failed: " + error_text(error)) + in_brackets(name_);
 }
 
 void V4l2Source::take(const v4l2_buffer& buffer, const ImageView& image, Grab& grab) {

@@ -160,11 +160,10 @@ std::string why_it_does_not_open(const std::string& device) {
 TEST(V4l2Source, TellsWhyACameraCannotBeOpened) {
   const test::TemporaryFolder folder;
   EXPECT_EQ(why_it_does_not_open("/dev/v4l/by-id/usb-none"),
-            "/dev/v4l/by-id/usb-none is not there");
-  EXPECT_EQ(why_it_does_not_open("no-such-serial"),
-            "no-such-serial is no camera's name or serial number now");
-  EXPECT_THAT(why_it_does_not_open("/dev/null"), HasSubstr("/dev/null is no Video4Linux device"));
-  EXPECT_THAT(why_it_does_not_open(""), HasSubstr("is no camera's name"));
+            "is not there (/dev/v4l/by-id/usb-none)");
+  EXPECT_EQ(why_it_does_not_open("no-such-serial"), "is not there (no-such-serial)");
+  EXPECT_THAT(why_it_does_not_open("/dev/null"), HasSubstr("is no Video4Linux device"));
+  EXPECT_EQ(why_it_does_not_open(""), "is not there ()");
 }
 
 }  // namespace
