@@ -35,7 +35,7 @@ def comes_back_different(other_mode, usable):
                 else:
                     # "gone" turns into why it cannot be used, once in the log
                     listener.wait_for_status(
-                        lambda status: "1280 x 720" in status["state_reason"], 20,
+                        lambda status: "no 640 x 480 frames" in status["state_reason"], 20,
                         "a reason that names the size", mark)
                     expect(len(boled.log_lines("1280 x 720")), 1, "log lines about the size")
             with Camera([first_mode]) as camera:

@@ -1,0 +1,103 @@
+"""The service under systemd: killed, stopped, its camera frozen and pulled out."""
+
+import shutil
+import subprocess
+import time
+
+from rig import environment, frames
+from rig.appliance import Listener, camera_file
+from rig.camera import Camera
+from rig.wait import Skip, expect, wait_until
+
+SMOKE = True
+TIME_LIMIT_S = 300
+SIZE = (640, 480)
+
+
+def run():
+    install()
+    with Camera([frames.rendered("YUYV", SIZE)], rates=(10,)) as camera, Listener() as listener:
+        configure(camera)
+        # Its camera is not there yet: that is no reason not to be ready.
+        seconds = {"start without a camera": timed(lambda: systemctl("start", "boled"))}
+        listener.wait_for_state("no camera", 20)
+        camera.plug()
+        listener.wait_for_list(30)
+        try:
+            seconds["SIGKILL"] = restarted_after("KILL", listener)
+            seconds["SIGSTOP"] = restarted_after("STOP", listener)
+            recovers_by_itself(camera, listener)
+        finally:
+            seconds["stop"] = timed(lambda: systemctl("stop", "boled"))
+            journal = subprocess.run(["journalctl", "-u", "boled", "-o", "short-monotonic"],
+                                     capture_output=True, text=True, check=True).stdout
+            (environment.scenario_directory() / "journal").write_text(journal)
+        expect(show("Result"), "success", "the service's result after an orderly stop")
+    return ", ".join(f"{what} {duration:.1f} s" for what, duration in seconds.items())
+
+
+def install():
+    """As the package would."""
+    unit = environment.source("systemd/boled.service")
+    if not unit.exists():
+        raise Skip("there is no systemd/boled.service yet")
+    shutil.copy(unit, "/etc/systemd/system/")
+    for file in environment.build("firmware_app").glob("bole*"):
+        if file.is_file():
+            shutil.copy(file, "/usr/bin/")
+    for users in environment.source("systemd").glob("*sysusers*"):
+        subprocess.run(["systemd-sysusers", users], check=True)
+    systemctl("daemon-reload")
+
+
+def configure(camera):
+    folder = camera_file(SIZE).parent
+    shutil.copytree(folder, "/etc/bole/camera", dirs_exist_ok=True)
+    with open("/etc/bole/boled.toml", "w") as config:
+        config.write(f'[source]\nuri = "v4l2:{camera.link}"\n')
+
+
+def restarted_after(signal, listener):
+    """Seconds from the signal to the next list of the restarted service."""
+    restarts = int(show("NRestarts"))
+    systemctl("kill", f"--signal={signal}", "--kill-whom=main", "boled")
+    killed = time.monotonic()
+    wait_until(lambda: int(show("NRestarts")) == restarts + 1, 60, f"a restart after {signal}")
+    arrival, _ = listener.wait_for_list(30, listener.mark())
+    return arrival - killed
+
+
+def recovers_by_itself(camera, listener):
+    """Frozen long enough for the watchdog, then unplugged and replugged: the same process goes on,
+    since waiting for a camera is progress."""
+    before = show("MainPID")
+    watchdog_s = int(show("WatchdogUSec", "--timestamp=unix").removesuffix("s") or 0)
+    mark = listener.mark()
+    camera.command("freeze")
+    arrival, _ = listener.wait_for_state("stalled", 20, mark)
+    listener.wait_for_status(lambda status: status["mono_ns"] / 1e9 > arrival + 2 * watchdog_s,
+                             2 * watchdog_s + 20, "two of the watchdog's times")
+    mark = listener.mark()
+    camera.command("run")
+    listener.wait_for_list(30, mark)
+    camera.unplug()
+    mark = listener.mark()
+    camera.plug()
+    listener.wait_for_list(30, mark)
+    expect(show("MainPID"), before, "the service's process")
+    assert "streaming" in show("StatusText"), show("StatusText")
+
+
+def systemctl(*words):
+    subprocess.run(["systemctl", *words], check=True, capture_output=True, timeout=120)
+
+
+def show(name, *more):
+    return subprocess.run(["systemctl", "show", "-P", name, *more, "boled"], check=True,
+                          capture_output=True, text=True).stdout.strip()
+
+
+def timed(action):
+    start = time.monotonic()
+    action()
+    return time.monotonic() - start
