@@ -22,7 +22,7 @@ class Camera(Process):
              "--rates", ",".join(map(str, rates)), *map(str, modes)],
         )
 
-    def end(self, timeout_s=10):
+    def end(self, timeout_s=30):
         self.child.stdin.close()  # the end of its commands is the camera's end
         return self.wait(timeout_s)
 

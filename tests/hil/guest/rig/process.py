@@ -33,7 +33,7 @@ class Process:
     def __exit__(self, *_):
         self.end()
 
-    def end(self, timeout_s=10):
+    def end(self, timeout_s=30):
         """Asks the process to end, then waits for it; returns its exit status (minus a signal)."""
         self.child.stdin.close()
         self.signal(signal.SIGTERM)
