@@ -38,8 +38,9 @@ OpenCvScene opencv_scene(ImageSize size) {
   }
   const cv::Mat1b green(setup.panorama.rows, setup.panorama.width,
                         const_cast<std::uint8_t*>(view.pixels), view.stride);
-  cv::copyMakeBorder(green, green, 0, 0, result.margin, result.margin, cv::BORDER_WRAP);
-  green.convertTo(result.panorama, CV_32F);
+  cv::Mat1b wide;
+  cv::copyMakeBorder(green, wide, 0, 0, result.margin, result.margin, cv::BORDER_WRAP);
+  wide.convertTo(result.panorama, CV_32F);
   return result;
 }
 
