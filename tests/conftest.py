@@ -1,5 +1,6 @@
 """What the Python tests share: the programs of a release build (BOLE_BUILD names another folder), the
-generated message types, and a rendered drive."""
+generated message types, and a rendered drive. With BOLE_LONG=1 the bus tests take minutes: more and
+longer outages."""
 
 import os
 import pathlib
@@ -12,6 +13,7 @@ import pytest
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = pathlib.Path(os.environ.get("BOLE_BUILD", ROOT / "build/release"))
 FRAMES = 20
+LONG = os.environ.get("BOLE_LONG") == "1"
 
 
 @pytest.fixture(scope="session")
@@ -50,12 +52,37 @@ def drive(programs, tmp_path_factory):
     return folder
 
 
+@pytest.fixture(scope="session")
+def raw_drive(programs, tmp_path_factory):
+    """A folder of few small raw frames, cheap to replay again and again."""
+    folder = tmp_path_factory.mktemp("raw_drive")
+    camera = ROOT / "tests/hil/cameras/640x480/camera.toml"
+    subprocess.run(
+        [programs / "bolectl", "sim", "--out", folder, "--frames", "4", "--seed", "7",
+         "--camera", camera, "--format", "yuyv"],
+        check=True,
+    )
+    return folder
+
+
 @pytest.fixture
 def lcm_url():
     """An address of this test's own, so that no other program's lists come in."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         probe.bind(("127.0.0.1", 0))
         return f"udpm://239.255.76.67:{probe.getsockname()[1]}?ttl=0"
+
+
+@pytest.fixture
+def report(request, record_testsuite_property):
+    """Notes figures in the results and, with -s, on the terminal."""
+
+    def note(**figures):
+        for name, value in figures.items():
+            record_testsuite_property(f"{request.node.name}: {name}", value)
+        print(request.node.name, figures)
+
+    return note
 
 
 @pytest.fixture
