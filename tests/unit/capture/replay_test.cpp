@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <mutex>
 #include <optional>
 #include <thread>
 #include <vector>
@@ -343,6 +344,34 @@ TEST(Replay, FramesOutliveTheirSource) {
   EXPECT_EQ(bytes_of(first.frame), grey_pixels('a'));
   EXPECT_EQ(bytes_of(second.frame), grey_pixels('b'));
   EXPECT_EQ(second.frame.file(), "f1.grey");
+}
+
+TEST(Replay, FramesMayBeDroppedByAnotherThread) {
+  const TemporaryFolder folder = folder_of(2);
+  ReplayOptions options = options_for(folder.path(), ReplayPace::Kind::fast);
+  options.loop = true;
+  ReplayClock clock;
+  const auto source = make_replay_source(options, clock);
+  source->open();
+  std::mutex mutex;
+  std::vector<Frame> handed_over;
+  std::thread other([&] {
+    for (int dropped = 0; dropped < 500;) {
+      std::vector<Frame> taken;
+      const std::lock_guard lock(mutex);
+      taken.swap(handed_over);
+      for (const Frame& frame : taken) {
+        EXPECT_EQ(bytes_of(frame), grey_pixels(frame.sensor_seq() % 2 == 0 ? 'a' : 'b'));
+        ++dropped;
+      }
+    }
+  });
+  for (int i = 0; i < 500; ++i) {
+    Grab grab = source->grab(seconds(1));
+    const std::lock_guard lock(mutex);
+    handed_over.push_back(std::move(grab.frame));
+  }
+  other.join();
 }
 
 // A picture with something in every channel.
