@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <stdexcept>
 #include <utility>
 
 namespace bole {
@@ -64,7 +64,7 @@ Grab Supervisor::open_or_wait() {
 void Supervisor::open() {
   try {
     source_.open();
-  } catch (const CaptureError& error) {
+  } catch (const std::runtime_error& error) {  // the camera's refusal, or the system's
     ++counts_.failed_opens;
     wait_for_camera(error.what());
     return;
