@@ -36,6 +36,10 @@ OcamModel::OcamModel(Parameters parameters) : p_(std::move(parameters)) {
       !all_finite({p_.centre_row, p_.centre_column, p_.c, p_.d, p_.e})) {
     throw std::invalid_argument("a number is not finite");
   }
+  if (!(p_.centre_row > -1 && p_.centre_row < p_.size.height && p_.centre_column > -1 &&
+        p_.centre_column < p_.size.width)) {
+    throw std::invalid_argument("the centre lies outside of the image");
+  }
   if (p_.direct.empty() || p_.direct[0] >= 0) {
     throw std::invalid_argument("the direct polynomial's first coefficient is not negative");
   }

@@ -26,7 +26,7 @@ class OcamModel final : public CameraModel {
   };
 
   /// Throws std::invalid_argument when the parameters are not finite, f(0) is not negative, the
-  /// affine part is singular or the size is not positive.
+  /// affine part is singular, the size is not positive or the centre is outside of the image.
   explicit OcamModel(Parameters parameters);
 
   ImageSize image_size() const override { return p_.size; }

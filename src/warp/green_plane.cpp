@@ -1,7 +1,5 @@
 #include "warp/green_plane.h"
 
-#include <algorithm>
-
 namespace bole {
 namespace {
 
@@ -14,11 +12,22 @@ struct Rows {  // of the image; at its border the one inside stands for the one 
   const std::uint8_t *above, *here, *below;
 };
 
-std::uint8_t mean_of_neighbours(const Rows& rows, int column, int width) {
-  const int left = column > 0 ? column - 1 : column + 1;
-  const int right = column + 1 < width ? column + 1 : column - 1;
+std::uint8_t mean_of_neighbours(const Rows& rows, int column, int left, int right) {
   return static_cast<std::uint8_t>(
       (rows.above[column] + rows.below[column] + rows.here[left] + rows.here[right] + 2) / 4);
+}
+
+// `first`: the first column that is not green. The mean is taken everywhere and used at every other
+// column: without branches the compiler makes vectors of it.
+void complete_row(const Rows& rows, int first, int width, std::uint8_t* out) {
+  for (int j = 1; j + 1 < width; ++j) {
+    const std::uint8_t here = rows.here[j], mean = mean_of_neighbours(rows, j, j - 1, j + 1);
+    out[j] = ((j ^ first) & 1) == 0 ? mean : here;
+  }
+  const int last = width - 1;
+  out[0] = first == 0 ? mean_of_neighbours(rows, 0, 1, 1) : rows.here[0];
+  out[last] =
+      last % 2 == first ? mean_of_neighbours(rows, last, last - 1, last - 1) : rows.here[last];
 }
 
 }  // namespace
@@ -33,11 +42,8 @@ void complete_bayer_green(const ImageView& image, std::vector<std::uint8_t>& gre
   const int green_first = parity_of_rows_that_begin_green(image.format);
   for (int i = 0; i < height; ++i) {
     const Rows rows{row(i > 0 ? i - 1 : 1), row(i), row(i + 1 < height ? i + 1 : i - 1)};
-    std::uint8_t* const out = &green[static_cast<std::size_t>(i) * static_cast<std::size_t>(width)];
-    std::copy_n(rows.here, width, out);
-    for (int j = i % 2 == green_first ? 1 : 0; j < width; j += 2) {
-      out[j] = mean_of_neighbours(rows, j, width);
-    }
+    complete_row(rows, i % 2 == green_first ? 1 : 0, width,
+                 &green[static_cast<std::size_t>(i) * static_cast<std::size_t>(width)]);
   }
 }
 

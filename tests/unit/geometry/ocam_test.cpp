@@ -150,6 +150,7 @@ TEST(Ocam, DamagedCalibrationsAreNamed) {
               HasSubstr("first coefficient is not negative"));
   EXPECT_THAT(problem_of(with("4 -182.6", "4 182.6")), HasSubstr("not negative"));
   EXPECT_THAT(problem_of(with("0.9998 0.0002 -0.0002", "0 0 0")), HasSubstr("singular"));
+  EXPECT_THAT(problem_of(with("483.2", "1e15")), HasSubstr("centre lies outside"));
   EXPECT_THAT(problem_of(with("960 1280", "0 1280")), HasSubstr("image height"));
   EXPECT_THAT(problem_of(with("960 1280", "960 1e9")), HasSubstr("image width"));
   EXPECT_THAT(problem_of(with("960 1280", "960.5 1280")), HasSubstr("image height"));
