@@ -19,6 +19,7 @@ def robot_and_planner(link, programs, raw_drive, tmp_path):
         Client("lcm_client.py", LCM_URL, "BOLE_.*", prefix=link.planner.prefix) as lcm,
         Client("zenoh_client.py", ENDPOINT, "route", "bole/**", prefix=link.planner.prefix) as zenoh,
         Daemon(programs, raw_drive, tmp_path / "boled.log", "--restamp", "--publish", "lcm,zenoh",
+               "--set", "detect.mode=paper",
                "--set", f"lcm.url={LCM_URL}", "--set", f'zenoh.connect=["{ENDPOINT}"]',
                prefix=link.robot.prefix) as boled,
     ):
@@ -104,6 +105,6 @@ def test_after_a_cut_the_newest_list_comes_first(
         assert seqs(received[bus]) == sorted(seqs(received[bus])), bus
         assert sum(bus_summary(log, bus)) == lists
         assert gaps(seqs(received[bus])) > 20, bus
-        assert log.count(f"error: {bus}: ") <= 1
     assert log.count("error: zenoh: ") == 1
+    assert log.count("error: lcm: ") <= 2  # the link is down; then: it has no route
     assert grown_kb < 1000
