@@ -24,8 +24,8 @@ struct TopicTraits {
 
 // In the order of ZenohTopic. Trees go before all else that shares the link.
 constexpr std::array<TopicTraits, 4> topics = {{
-    {"trees", "application/x-lcm;bole.tree_list_t", 2},
-    {"status", "application/x-lcm;bole.status_t", 4},
+    {"trees", "application/octet-stream;bole.tree_list_t", 2},
+    {"status", "application/octet-stream;bole.status_t", 4},
     {"config", "", 0},
     {"calibration", "", 0},
 }};

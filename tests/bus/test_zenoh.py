@@ -43,5 +43,5 @@ def test_the_same_lists_byte_for_byte_on_both_buses(programs, drive, lcm_url):
     assert len(samples) == 15
     for _, encoding, payload in samples:
         data = bytes.fromhex(payload)
-        assert encoding == "application/x-lcm;bole.tree_list_t"
+        assert encoding == "application/octet-stream;bole.tree_list_t"
         assert received[data[32:40]] == data

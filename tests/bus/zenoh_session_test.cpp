@@ -134,7 +134,7 @@ TEST(ZenohSession, DeliversTheBytesWithTheirSchema) {
   const auto message = await(subscriber, ZenohMessage::Event::sample, prefix + "trees");
   ASSERT_TRUE(message);
   EXPECT_EQ(message->payload, payload);
-  EXPECT_EQ(message->encoding, "application/x-lcm;bole.tree_list_t");
+  EXPECT_EQ(message->encoding, "application/octet-stream;bole.tree_list_t");
 }
 
 TEST(ZenohSession, TellsTheDaemonsLifeFromItsToken) {
@@ -410,8 +410,8 @@ TEST_F(ZenohPython, SubscriberGetsTheSameBytes) {
   daemon_.put(ZenohTopic::status, bytes_of("status"));
   std::vector<std::string> lines{client.line(), client.line()};
   std::ranges::sort(lines);  // the two have different priorities
-  EXPECT_EQ(lines[0], prefix + "status application/x-lcm;bole.status_t 737461747573");
-  EXPECT_EQ(lines[1], prefix + "trees application/x-lcm;bole.tree_list_t 7472656573");
+  EXPECT_EQ(lines[0], prefix + "status application/octet-stream;bole.status_t 737461747573");
+  EXPECT_EQ(lines[1], prefix + "trees application/octet-stream;bole.tree_list_t 7472656573");
 }
 
 TEST_F(ZenohPython, QueriesAreAnsweredWithTheLastBytes) {
