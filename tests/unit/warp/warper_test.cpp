@@ -154,6 +154,36 @@ TEST(Warper, PixelsFilledFromFarAwayHaveTheirSourcesValue) {
   }
 }
 
+// Its stride does not fit the kernels' 16 bits, its columns in steps do not either.
+TEST(Warper, AVeryWideImageIsWarpedToo) {
+  const TempFolder folder;
+  const auto file = folder.write("wide.toml", R"(
+[camera]
+model = "pinhole"
+horizontal_fov_deg = 100
+width = 20000
+height = 64
+[mount]
+height_m = 1
+[panorama]
+columns = 16384
+elevation_top_deg = 0.2
+range_min_m = 200
+)");
+  const WarpTable table = build_warp_table(load_camera(file));
+  const GuardedBuffer buffer(packed_frame_bytes(PixelFormat::rgb24, {20000, 64}),
+                             GuardedBuffer::Tight::end);
+  for (std::size_t i = 0; i < buffer.bytes().size(); ++i) {
+    buffer.bytes()[i] = std::byte(i % 60000 / 3 * 255 / 20000);  // brighter to the right
+  }
+  Warper warper(table);
+  const PanoramaView view =
+      warper.warp(*view_packed(PixelFormat::rgb24, {20000, 64}, buffer.bytes()));
+  for (int j = 0; j < view.geometry->width; ++j) {
+    EXPECT_NEAR(view.row(10)[j], table.source(10, j).column * 255 / 20000, 1.5);
+  }
+}
+
 TEST(Warper, GreenOfRgbIsGreenWhateverRedAndBlue) {
   const TempFolder folder;
   const WarpTable table = build_warp_table(load_camera(write_small_camera(folder)));
