@@ -24,8 +24,8 @@ TrunkFinder::TrunkFinder(const DetectorSetup& setup)
       templates_(setup, most_candidates(setup.search)),
       fitter_(setup),
       reader_(setup) {
-  trunks_.reserve(most_candidates(setup.search));
-  kept_.reserve(most_candidates(setup.search));
+  trunks_.reserve(3 * most_candidates(setup.search));
+  kept_.reserve(3 * most_candidates(setup.search));
 }
 
 std::span<const Candidate> TrunkFinder::candidates(const PanoramaView& panorama) {
@@ -41,30 +41,41 @@ void TrunkFinder::read(const PanoramaView& panorama, const TrunkShape& shape, co
 
 std::span<Trunk> TrunkFinder::find(const PanoramaView& panorama) {
   trunks_.clear();
-  TrunkFeatures::Values features;
   for (const Candidate& candidate : candidates(panorama)) {
     Trunk trunk;
     if (!fit(candidate, trunk.shape, trunk.fit)) continue;
-    read(panorama, trunk.shape, trunk.fit, candidate.evidence, features);
-    Judgement judgement = judge(features);
-    if (judgement.logit < kWorthASecondLook) continue;
-
-    // A second look from where the first one says that the trunk is.
-    trunk.shape = corrected(trunk.shape, judgement, focal_);
-    refine(trunk.shape, trunk.fit);
-    read(panorama, trunk.shape, trunk.fit, candidate.evidence, features);
-    judgement = judge(features);
-    if (judgement.logit < kWorthAnswering) continue;
-    const float width = trunk.shape.width(), unit = foot_unit(trunk.shape, focal_);
-    trunk.shape = corrected(trunk.shape, judgement, focal_);
-    trunk.probability = 1 / (1 + std::exp(-judgement.logit));
-    trunk.centre_sigma = width * std::exp(judgement.log_sigma[0]);
-    trunk.width_sigma = std::exp(judgement.log_sigma[1]);
-    trunk.foot_sigma = unit * std::exp(judgement.log_sigma[2]);
-    trunks_.push_back(trunk);
+    look(panorama, trunk, candidate.evidence);
+    std::array<float, EdgeFitter::kOtherFeet> feet;
+    const int count = other_feet(trunk.shape, feet);
+    for (int i = 0; i < count; ++i) {
+      Trunk other = trunk;
+      other.shape = ended_at(trunk.shape, feet[i]);
+      look(panorama, other, candidate.evidence);
+    }
   }
   suppress();
   return kept_;
+}
+
+void TrunkFinder::look(const PanoramaView& panorama, Trunk trunk, float evidence) {
+  TrunkFeatures::Values features;
+  read(panorama, trunk.shape, trunk.fit, evidence, features);
+  Judgement judgement = judge(features);
+  if (judgement.logit < kWorthASecondLook) return;
+
+  // A second look from where the first one says that the trunk is.
+  trunk.shape = corrected(trunk.shape, judgement, focal_);
+  refine(trunk.shape, trunk.fit);
+  read(panorama, trunk.shape, trunk.fit, evidence, features);
+  judgement = judge(features);
+  if (judgement.logit < kWorthAnswering || trunks_.size() == trunks_.capacity()) return;
+  const float width = trunk.shape.width(), unit = foot_unit(trunk.shape, focal_);
+  trunk.shape = corrected(trunk.shape, judgement, focal_);
+  trunk.probability = 1 / (1 + std::exp(-judgement.logit));
+  trunk.centre_sigma = width * std::exp(judgement.log_sigma[0]);
+  trunk.width_sigma = std::exp(judgement.log_sigma[1]);
+  trunk.foot_sigma = unit * std::exp(judgement.log_sigma[2]);
+  trunks_.push_back(trunk);
 }
 
 // Whether two outlines explain the same picture: one covers most of the other, or they take one

@@ -33,11 +33,15 @@ class TrunkFinder {
   bool fit(const Candidate& candidate, TrunkShape& shape, EdgeFit& fit) const {
     return fitter_.fit(bands_, candidate, shape, fit);
   }
+  int other_feet(const TrunkShape& shape, std::array<float, EdgeFitter::kOtherFeet>& feet) const {
+    return fitter_.other_feet(bands_, shape, feet);
+  }
   void refine(TrunkShape& shape, EdgeFit& fit) const { fitter_.refine(bands_, shape, fit); }
   void read(const PanoramaView& panorama, const TrunkShape& shape, const EdgeFit& fit,
             float evidence, TrunkFeatures::Values& out) const;
 
  private:
+  void look(const PanoramaView& panorama, Trunk trunk, float evidence);
   void suppress();
   bool same_pixels(const TrunkShape& a, const TrunkShape& b) const;
 

@@ -13,6 +13,8 @@ constexpr int kSlopes = 9;
 constexpr float kSlopeStep = 0.015F;  // columns a row
 constexpr float kContrast = 0.22F * Bands::kScale;
 constexpr float kStrongContrast = 1.2F * Bands::kScale;
+constexpr float kLeastSum = 1.0F;    // of the contrast above another foot, in full bands
+constexpr float kFall = 0.6F;        // by how much it falls below it
 constexpr float kWrongSign = -0.7F;  // what a response of the wrong sign counts above the horizon
 
 float response(const std::int32_t* sum, int x, int k) {
@@ -22,6 +24,18 @@ float response(const std::int32_t* sum, int x, int k) {
 float row_of(int band) { return (static_cast<float>(band) + 0.5F) * Bands::kRows; }
 
 }  // namespace
+
+TrunkShape ended_at(const TrunkShape& shape, float foot) {
+  TrunkShape ended = shape;
+  ended.foot = foot;
+  ended.left += shape.left_slope * (foot - shape.foot);
+  ended.right += shape.right_slope * (foot - shape.foot);
+  if (ended.width() < 2.5F) {
+    ended.left = ended.centre() - 1.25F;
+    ended.right = ended.left + 2.5F;
+  }
+  return ended;
+}
 
 EdgeFitter::EdgeFitter(const DetectorSetup& setup)
     : width_(setup.panorama.width),
@@ -202,6 +216,52 @@ bool EdgeFitter::fit(const Bands& bands, const Candidate& c, TrunkShape& shape,
            .dark = c.dark};
   refine(bands, shape, fit);
   return true;
+}
+
+int EdgeFitter::other_feet(const Bands& bands, const TrunkShape& shape,
+                           std::array<float, kOtherFeet>& feet) const {
+  const int flank = std::clamp(static_cast<int>(0.3F * shape.width()), 2, 8);
+  const float sign = (shape.dark ? 1.0F : -1.0F) / kContrast;
+  struct Peak {
+    int band = 0;
+    float sum = 0;
+  };
+  std::array<Peak, kOtherFeet> peaks;
+  const auto offer = [&](Peak peak) {
+    const float row = static_cast<float>(peak.band + 1) * Bands::kRows;
+    if (std::abs(row - shape.foot) < std::max(8.0F, 0.35F * shape.width())) return;
+    for (Peak& kept : peaks)
+      if (peak.sum > kept.sum) std::swap(peak, kept);
+  };
+  Peak running;
+  float sum = 0;
+  const int lowest = std::min(bands.count(), static_cast<int>(shape.foot) / Bands::kRows + 30);
+  for (int band = first_band(shape.left, shape.right); band < lowest; ++band) {
+    const float row = row_of(band) - shape.foot;
+    const auto at = [&](float column, float slope) {
+      const int x = static_cast<int>(std::lround(column + slope * row));
+      return std::clamp(sign * response(bands.sum(band), x, flank), -1.0F, 1.0F);
+    };
+    float l = -at(shape.left, shape.left_slope), r = at(shape.right, shape.right_slope);
+    if (band < horizon_band_) {
+      l = l < 0 ? kWrongSign * l : l;
+      r = r < 0 ? kWrongSign * r : r;
+      sum += 0.4F * ((l + r) / 4 + std::min(l, r) / 2 - 0.5F);
+    } else {
+      sum += (l + r) / 4 + std::min(l, r) / 2 - 0.3F;
+    }
+    sum = std::max(sum, 0.0F);
+    if (sum > running.sum) running = {band, sum};
+    if (running.sum > kLeastSum && sum < running.sum - kFall) {
+      offer(running);
+      running = {band, sum};
+    }
+  }
+  if (running.sum > kLeastSum) offer(running);
+  int count = 0;
+  for (const Peak& peak : peaks)
+    if (peak.sum > 0) feet[count++] = static_cast<float>((peak.band + 1) * Bands::kRows);
+  return count;
 }
 
 void EdgeFitter::refine(const Bands& bands, TrunkShape& shape, EdgeFit& fit) const {

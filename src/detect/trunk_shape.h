@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "detect/bands.h"
@@ -19,6 +20,9 @@ struct TrunkShape {
   float centre() const { return 0.5F * (left + right); }
   float slope() const { return 0.5F * (left_slope + right_slope); }
 };
+
+/// The same edges, ended at another row.
+TrunkShape ended_at(const TrunkShape& shape, float foot);
 
 /// How well two lines describe a trunk's edges.
 struct EdgeFit {
@@ -40,6 +44,12 @@ class EdgeFitter {
 
   /// The shape a candidate is refined to; false when there is nothing to fit.
   bool fit(const Bands& bands, const Candidate& candidate, TrunkShape& shape, EdgeFit& fit) const;
+
+  /// Other rows at which the trunk between these edges may end: where its contrast, summed down the
+  /// edges, has a peak and then falls. Best first; returns how many.
+  static constexpr int kOtherFeet = 2;
+  int other_feet(const Bands& bands, const TrunkShape& shape,
+                 std::array<float, kOtherFeet>& feet) const;
 
   /// Places the edges of a shape anew, from where they are; then `fit` describes them.
   void refine(const Bands& bands, TrunkShape& shape, EdgeFit& fit) const;

@@ -1,0 +1,193 @@
+// dump_candidates OUT FRAME...: what the network is to learn from, by the detector's own code. For
+// every frame the candidates, some of them shaken, and shapes about the true trunks; of each
+// kHead + TrunkFeatures::kCount floats: frame number, label (1 trunk, 0 none), shifts to the truth
+// (see Judgement), weight, then the features.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "detect/trunk_finder.h"
+#include "simulate/noise.h"
+#include "training_frame.h"
+
+namespace bole::train {
+namespace {
+
+constexpr int kHead = 6;
+constexpr double kMostNegatives = 150;  // a frame; the others are drawn from, and weigh more
+constexpr double kReferenceFocal = 1440 / 6.283185307;
+
+struct Label {
+  float trunk = 0;  // 1, 0, or -1: neither, left out
+  float centre_shift = 0, log_width = 0, foot_shift = 0;
+  int which = -1;
+};
+
+class Dump {
+ public:
+  Dump(const TrainingFrame& frame, int number, std::FILE* out)
+      : frame_(frame),
+        number_(number),
+        out_(out),
+        random_(static_cast<std::uint64_t>(number), 41),
+        focal_(frame.geometry.focal()),
+        scale_(focal_ / kReferenceFocal),
+        // Near trunks only, or far ones as well.
+        search_(random_.chance(0.4F) ? Search{{1, 40}, {0.1, 1.2}} : Search{}),
+        finder_({frame.geometry, frame.seen_map(), frame.height, search_}),
+        found_(frame.trunks.size()) {}
+
+  void run() {
+    const auto candidates = finder_.candidates(frame_.view());
+    const double kept =
+        std::min(1.0, kMostNegatives / std::max(1.0, static_cast<double>(candidates.size())));
+    for (const Candidate& candidate : candidates) {
+      TrunkShape shape;
+      EdgeFit fit;
+      if (!finder_.fit(candidate, shape, fit)) continue;
+      put_candidate(shape, fit, candidate.evidence, kept);
+      std::array<float, EdgeFitter::kOtherFeet> feet;
+      const int count = finder_.other_feet(shape, feet);
+      for (int i = 0; i < count; ++i)
+        put_candidate(ended_at(shape, feet[i]), fit, candidate.evidence, 0.5 * kept);
+    }
+    for (std::size_t i = 0; i < found_.size(); ++i) put_true(frame_.trunks[i], found_[i]);
+  }
+
+ private:
+  // A candidate, and now and then a shaken twin. Of those that are no trunk the share `kept`.
+  void put_candidate(const TrunkShape& shape, const EdgeFit& fit, float evidence, double kept) {
+    const Label here = label(shape);
+    const bool trunk = here.trunk > 0;
+    if (trunk) found_[here.which] = shape;
+    const auto chance = static_cast<float>(trunk ? 1 : kept);
+    if (random_.chance(chance)) put(shape, fit, evidence, 1 / chance);
+    if (random_.chance(0.35F * chance)) {
+      TrunkShape shaken = shake(shape, 0.1F, 0.15F, 0.15F);
+      EdgeFit shaken_fit = fit;
+      finder_.refine(shaken, shaken_fit);
+      put(shaken, shaken_fit, evidence, 0.5F / chance);
+    }
+  }
+
+  // Shapes close about a true trunk, as the second look meets them.
+  void put_true(const TrunkTruth& trunk, const std::optional<TrunkShape>& found) {
+    const double width = trunk.angular_width * focal_;
+    const double foot = row_of(trunk);
+    if (trunk.visible < 0.5F || width < 3.5 * scale_ || trunk.range < 0.7F ||
+        trunk.range > 1.2 * search_.range.high || foot > frame_.geometry.rows)
+      return;
+    const double middle = frame_.geometry.column_of_bearing(trunk.bearing) + 0.5;
+    if (middle > frame_.geometry.width) return;
+    for (int i = 0; i < (found ? 3 : 2); ++i) {
+      TrunkShape shape;
+      if (found)
+        shape = *found;
+      else
+        shape.dark = i == 0;
+      shape.foot = static_cast<float>(foot);
+      shape.left = static_cast<float>(middle - width / 2);
+      shape.right = static_cast<float>(middle + width / 2);
+      shape = shake(shape, 0.08F, 0.1F, 0.12F);
+      EdgeFit fit;
+      finder_.refine(shape, fit);
+      if (!found && fit.agreement + fit.agreement_above < 0.3F) continue;
+      put(shape, fit, random_.uniform(2, 15), 0.4F);
+    }
+  }
+
+  TrunkShape shake(const TrunkShape& shape, float centre, float width, float foot) {
+    TrunkShape shaken = shape;
+    const float w = shape.width();
+    const float middle = shape.centre() + centre * random_.normal() * w;
+    const float half = 0.5F * w * std::exp(width * random_.normal());
+    shaken.foot += foot * random_.normal() * w;
+    shaken.left = middle - half;
+    shaken.right = middle + half;
+    return shaken;
+  }
+
+  void put(const TrunkShape& shape, const EdgeFit& fit, float evidence, float weight) {
+    const Label here = label(shape);
+    if (here.trunk < 0) return;
+    TrunkFeatures::Values features;
+    finder_.read(frame_.view(), shape, fit, evidence, features);
+    const float head[kHead] = {static_cast<float>(number_),
+                               here.trunk,
+                               here.centre_shift,
+                               here.log_width,
+                               here.foot_shift,
+                               weight};
+    std::fwrite(head, sizeof(float), kHead, out_);
+    std::fwrite(features.data(), sizeof(float), features.size(), out_);
+  }
+
+  double row_of(const TrunkTruth& trunk) const {
+    return frame_.geometry.row_of_tangent(trunk.foot_tangent) + 0.5;
+  }
+
+  // A shape is of a trunk when its middle, width and foot are near enough for the network to mend;
+  // what is near but not near enough, or of a trunk hardly seen, is left out.
+  Label label(const TrunkShape& shape) const {
+    Label best;
+    double least = 9;
+    bool near_one = false;
+    for (std::size_t i = 0; i < frame_.trunks.size(); ++i) {
+      const TrunkTruth& trunk = frame_.trunks[i];
+      const double width = trunk.angular_width * focal_;
+      if (width < 2.5 * scale_ || trunk.visible < 0.05F) continue;
+      const double down = row_of(trunk) - shape.foot;
+      const double turn = frame_.geometry.columns;
+      double across = frame_.geometry.column_of_bearing(trunk.bearing) + 0.5 - shape.centre() -
+                      shape.slope() * down;
+      across -= turn * std::round(across / turn);
+      const double log_width = std::log(width / shape.width());
+      const double x = std::abs(across) / std::max(3 * scale_, 0.3 * width);
+      const double w = std::abs(log_width) / 0.42;
+      const double y = std::abs(down) / std::max(6 * scale_, 0.6 * width);
+      const bool tight = x < 1 && w < 1 && y < 1;
+      near_one |= x < 2 && w < 1.9 && y < 2 && (!tight || trunk.visible < 0.25F);
+      const double cost = x * x + w * w + y * y;
+      if (!tight || trunk.visible < 0.25F || cost >= least) continue;
+      least = cost;
+      best.which = static_cast<int>(i);
+      best.trunk = trunk.visible >= 0.5F && width >= 3.5 * scale_ ? 1 : -1;
+      best.centre_shift = static_cast<float>(across / shape.width());
+      best.log_width = static_cast<float>(log_width);
+      best.foot_shift = static_cast<float>(down) / foot_unit(shape, focal_);
+    }
+    if (best.which < 0 && near_one) best.trunk = -1;
+    return best;
+  }
+
+  const TrainingFrame& frame_;
+  int number_;
+  std::FILE* out_;
+  simulate::Random random_;
+  double focal_, scale_;
+  Search search_;
+  TrunkFinder finder_;
+  std::vector<std::optional<TrunkShape>> found_;  // a shape of each trunk
+};
+
+}  // namespace
+}  // namespace bole::train
+
+int main(int count, char** arguments) {
+  if (count < 3) {
+    std::fputs("usage: dump_candidates OUT FRAME...\n", stderr);
+    return 2;
+  }
+  std::FILE* out = std::fopen(arguments[1], "wb");
+  if (!out) return 1;
+  for (int i = 2; i < count; ++i) {
+    const std::filesystem::path file = arguments[i];
+    const auto frame = bole::train::TrainingFrame::load(file);
+    bole::train::Dump(frame, std::stoi(file.stem().string()), out).run();
+  }
+  return std::fclose(out) == 0 ? 0 : 1;
+}
