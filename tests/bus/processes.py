@@ -84,6 +84,9 @@ class Client:
         return self
 
     def __exit__(self, *_):
+        self.close()
+
+    def close(self):
         self.process.send_signal(signal.SIGKILL)
         self.process.wait()
         self._reader.join()
