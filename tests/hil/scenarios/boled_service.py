@@ -1,5 +1,7 @@
 """The service under systemd: killed, stopped, its camera frozen and pulled out."""
 
+import pathlib
+import re
 import shutil
 import subprocess
 import time
@@ -37,24 +39,24 @@ def run():
 
 
 def install():
-    """As the package would."""
-    unit = environment.source("systemd/boled.service")
-    if not unit.exists():
-        raise Skip("there is no systemd/boled.service yet")
+    """As `cmake --install` would."""
+    unit = environment.build("systemd/boled.service")
+    program = re.search(r"ExecStart=(\S+)", unit.read_text())[1]
+    if not (built := environment.build("firmware_app/boled")).exists():
+        raise Skip("boled is not built")
+    shutil.copy(built, program)
     shutil.copy(unit, "/etc/systemd/system/")
-    for file in environment.build("firmware_app").glob("bole*"):
-        if file.is_file():
-            shutil.copy(file, "/usr/bin/")
-    for users in environment.source("systemd").glob("*sysusers*"):
-        subprocess.run(["systemd-sysusers", users], check=True)
+    pathlib.Path("/etc/udev/rules.d").mkdir(exist_ok=True)
+    shutil.copy(environment.source("systemd/70-bole-cameras.rules"), "/etc/udev/rules.d/")
+    subprocess.run(["udevadm", "control", "--reload"], check=True)
     systemctl("daemon-reload")
 
 
 def configure(camera):
-    folder = camera_file(SIZE).parent
-    shutil.copytree(folder, "/etc/bole/camera", dirs_exist_ok=True)
-    with open("/etc/bole/boled.toml", "w") as config:
-        config.write(f'[source]\nuri = "v4l2:{camera.link}"\n')
+    """By the name that our udev rule gives."""
+    shutil.copytree(camera_file(SIZE).parent, "/etc/bole/camera", dirs_exist_ok=True)
+    pathlib.Path("/etc/bole/boled.toml").write_text(
+        f'[source]\nuri = "v4l2:/dev/bole/serial/{camera.serial}"\n')
 
 
 def restarted_after(signal, listener):
@@ -71,7 +73,7 @@ def recovers_by_itself(camera, listener):
     """Frozen long enough for the watchdog, then unplugged and replugged: the same process goes on,
     since waiting for a camera is progress."""
     before = show("MainPID")
-    watchdog_s = int(show("WatchdogUSec", "--timestamp=unix").removesuffix("s") or 0)
+    watchdog_s = int(show("WatchdogUSec").removesuffix("s"))
     mark = listener.mark()
     camera.command("freeze")
     arrival, _ = listener.wait_for_state("stalled", 20, mark)
@@ -92,8 +94,8 @@ def systemctl(*words):
     subprocess.run(["systemctl", *words], check=True, capture_output=True, timeout=120)
 
 
-def show(name, *more):
-    return subprocess.run(["systemctl", "show", "-P", name, *more, "boled"], check=True,
+def show(name):
+    return subprocess.run(["systemctl", "show", "-P", name, "boled"], check=True,
                           capture_output=True, text=True).stdout.strip()
 
 
