@@ -15,7 +15,7 @@ BITS_PER_PIXEL = {
 USB_FORMATS = ("YUYV", "UYVY", "NV12", "GREY", "BA81", "GBRG", "GRBG", "RGGB", "BGR3", "MJPG")
 SIZES = ((640, 480), (1280, 720))
 
-# The project's names of the same formats; they are also the endings of its raw frames.
+# The project's names of the same formats.
 PROJECT_NAMES = {
     "YUYV": "yuyv", "UYVY": "uyvy", "NV12": "nv12", "NM12": "nv12", "GREY": "grey", "BA81": "bggr",
     "GBRG": "gbrg", "GRBG": "grbg", "RGGB": "rggb", "BGR3": "bgr24", "RGB3": "rgb24",
@@ -54,15 +54,16 @@ def rendered(fourcc, size, count=None):
     mode = Mode(fourcc, width, height,
                 environment.SCRATCH / f"rendered_{fourcc}_{width}x{height}_{count or 'all'}")
     if not mode.path.exists():
-        name = PROJECT_NAMES[fourcc]
-        files = sorted(rendered_folder(fourcc, size).glob(f"*.{name}"))[:count]
+        files = sorted(rendered_folder(fourcc, size).glob("frame_*"))[:count]
         mode.path.write_bytes(b"".join(file.read_bytes() for file in files))
     return mode
 
 
 def rendered_folder(fourcc, size):
     """The pictures of a drive through a wood (host/frames) in this format, ready to be replayed."""
-    folder = environment.build("hil/frames", f"{size[0]}x{size[1]}", PROJECT_NAMES[fourcc])
+    # A file of several JPEGs is a video to replay; single ones are pictures.
+    ending = "jpg" if fourcc == "MJPG" else PROJECT_NAMES[fourcc]
+    folder = environment.build("hil/frames", f"{size[0]}x{size[1]}", ending)
     if not folder.exists():
         raise Skip(f"{folder} is not rendered")
     return folder
