@@ -45,5 +45,5 @@ def cause_is(fault, fourcc, cause):
                     f"{fault}: two more frames {cause}", mark)
             except TimeoutError as error:
                 raise AssertionError(f"{error}; drops {drops(listener.last_status())}") from None
-            listener.wait_for_list(20, listener.mark())
+            listener.wait_for_new_list(20)
             expect(boled.child.poll(), None, "boled's exit status")

@@ -31,7 +31,7 @@ def comes_back_different(other_mode, usable):
                 mark = listener.mark()
                 camera.plug()
                 if usable:
-                    listener.wait_for_list(20, mark)
+                    listener.wait_for_new_list(20)
                 else:
                     # "gone" turns into why it cannot be used, once in the log
                     listener.wait_for_status(
@@ -39,9 +39,8 @@ def comes_back_different(other_mode, usable):
                         "a reason that names the size", mark)
                     expect(len(boled.log_lines("1280 x 720")), 1, "log lines about the size")
             with Camera([first_mode]) as camera:
-                mark = listener.mark()
                 camera.plug()
-                listener.wait_for_list(20, mark)
+                listener.wait_for_new_list(20)
 
 
 def refuses_a_control():

@@ -26,7 +26,7 @@ def run():
             camera.wait_for_event("stopped", 10)
             mark = listener.mark()
             camera.command("run")
-            listener.wait_for_list(20, mark)
+            listener.wait_for_new_list(20)
             listener.wait_for_state("streaming", 5, mark)
             expect(len(boled.log_lines("stalled")), 1, "log lines about it")
     return f"seen within {seen - frozen:.2f} s"

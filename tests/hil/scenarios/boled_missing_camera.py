@@ -18,16 +18,14 @@ def run():
     with Camera([mode]) as camera, Listener() as listener:
         with Boled(f"v4l2:{camera.link}", SIZE) as boled:
             listener.wait_for_state("no camera", 60)
-            mark = listener.mark()
             camera.plug()
-            listener.wait_for_list(20, mark)
+            listener.wait_for_new_list(20)
             expect(len(boled.log_lines("no camera")), 1, "log lines about the missing camera")
         os.chmod(camera.device, 0o600)
         mark = listener.mark()
         with Boled(f"v4l2:{camera.link}", SIZE, wrapper=AS_NOBODY, name="boled_as_nobody") as boled:
             listener.wait_for_status(lambda status: "ermission" in status["state_reason"], 60,
                                      "permission denied", mark)
-            mark = listener.mark()
             os.chmod(camera.device, 0o666)
-            listener.wait_for_list(20, mark)
+            listener.wait_for_new_list(20)
             expect(len(boled.log_lines("ermission")), 1, "log lines about the permission")

@@ -5,7 +5,7 @@ import time
 from rig import environment, frames
 from rig.appliance import Boled, Listener
 from rig.camera import Camera
-from rig.wait import expect
+from rig.wait import wait_until
 
 SMOKE = True
 TIME_LIMIT_S = 300
@@ -29,7 +29,9 @@ def run():
                 seen.append(outage_s)
                 again.append(back_s)
                 devices.add(camera.device)
-            expect(boled.holdings(), holdings, "what boled holds after all that")
+            # A frame in processing holds the buffers of its stream a moment longer.
+            wait_until(lambda: boled.holdings() == holdings, 10,
+                       f"boled holds {holdings} again, as after the first outage")
     assert len(devices) > 1, f"the device was always {devices}"
     assert max(seen) <= OUTAGE_SEEN_WITHIN_S, f"outage seen after {max(seen):.2f} s"
     assert max(again) <= STREAMS_AGAIN_WITHIN_S, f"streaming again after {max(again):.2f} s"
@@ -45,8 +47,7 @@ def replug(camera, listener):
         unplugged = time.monotonic()
         camera.unplug()
         outage_seen, _ = listener.wait_for_state("no camera", 10, mark)
-        mark = listener.mark()
         camera.plug()
         there = time.monotonic()
-        back, _ = listener.wait_for_list(30, mark)
+        back, _ = listener.wait_for_new_list(30)
     return outage_seen - unplugged, back - there

@@ -3,6 +3,7 @@ process."""
 
 import json
 import pathlib
+import time
 
 from rig import environment
 from rig.process import Process
@@ -76,6 +77,11 @@ class Listener(Process):
             return message if _is_list(message) and wanted(message) else None
 
         return self.stdout.wait_for(matches, timeout_s, "a list", mark)
+
+    def wait_for_new_list(self, timeout_s=20):
+        """The first list of a frame taken from now on, with its arrival time."""
+        now_ns = time.monotonic_ns()
+        return self.wait_for_list(timeout_s, self.mark(), lambda one: one["capture_mono_ns"] > now_ns)
 
     def wait_for_lists(self, count, timeout_s, mark=0):
         """Waits until there have been this many lists from `mark` on."""

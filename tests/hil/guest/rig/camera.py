@@ -11,9 +11,10 @@ from rig.wait import wait_until
 
 class Camera(Process):
     """A USB camera that shows `modes` (rig.frames.Mode), unplugged at first. `port` tells several
-    cameras apart, `serial` gives each a stable name below /dev/v4l/by-id."""
+    cameras apart, `serial` gives each a stable name below /dev/v4l/by-id. The first of the `rates`
+    (frames a second) is the default: 10, since emulation on a busy machine cannot do 30."""
 
-    def __init__(self, modes, serial="0001", rates=(30, 15, 10, 5), port=0):
+    def __init__(self, modes, serial="0001", rates=(10, 30, 15, 5), port=0):
         self.serial = serial
         self.link = pathlib.Path(f"/dev/v4l/by-id/usb-bole_Rig_Camera_{serial}-video-index0")
         super().__init__(
