@@ -88,10 +88,12 @@ Agreed configure(libcamera::Camera& camera, const CameraSettings& settings) {
                      ", which the calibration is for; it offers " + stream.toString());
 }
 
-class LibcameraSource : public FrameSource {
+class LibcameraSource final : public FrameSource {
  public:
   LibcameraSource(std::string id, const CameraSettings& settings, const Clock& clock)
       : id_(std::move(id)), settings_(settings), clock_(clock) {}
+  LibcameraSource(const LibcameraSource&) = delete;
+  LibcameraSource& operator=(const LibcameraSource&) = delete;
   ~LibcameraSource() override { close(); }
 
   void open() override {

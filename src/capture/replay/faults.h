@@ -38,6 +38,6 @@ std::vector<Fault> read_faults(const std::filesystem::path& path);
 /// `inner` with faults. Durations go by `clock`, so they hold in lockstep as in real time; with
 /// `fast` no time passes in which frames could be missed. `clock` must outlive the source.
 std::unique_ptr<FrameSource> make_faulty_source(std::unique_ptr<FrameSource> inner,
-                                                std::vector<Fault> faults, Clock& clock);
+                                                const std::vector<Fault>& faults, Clock& clock);
 
 }  // namespace bole

@@ -33,9 +33,9 @@ class SharedFrame : public FrameBuffers {
 
 class FaultySource : public FrameSource {
  public:
-  FaultySource(std::unique_ptr<FrameSource> inner, std::vector<Fault> faults, Clock& clock)
+  FaultySource(std::unique_ptr<FrameSource> inner, const std::vector<Fault>& faults, Clock& clock)
       : inner_(std::move(inner)), clock_(clock) {
-    for (Fault& fault : faults) waiting_.push_back({std::move(fault), 0});
+    for (const Fault& fault : faults) waiting_.push_back({fault, 0});
   }
 
   void open() override {
@@ -204,8 +204,8 @@ Grab FaultySource::grab(std::chrono::nanoseconds timeout) {
 }  // namespace
 
 std::unique_ptr<FrameSource> make_faulty_source(std::unique_ptr<FrameSource> inner,
-                                                std::vector<Fault> faults, Clock& clock) {
-  return std::make_unique<FaultySource>(std::move(inner), std::move(faults), clock);
+                                                const std::vector<Fault>& faults, Clock& clock) {
+  return std::make_unique<FaultySource>(std::move(inner), faults, clock);
 }
 
 }  // namespace bole

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t kSecondUs = 1'000'000;
 
-class VideoMedia : public ReplayMedia {
+class VideoMedia final : public ReplayMedia {
  public:
   explicit VideoMedia(const ReplayOptions& options)
       : path_(options.path), name_(options.path.filename()), wanted_(options.size) {

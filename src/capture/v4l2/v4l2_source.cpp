@@ -20,10 +20,12 @@ namespace {
 
 constexpr double kNotMetered = -1;
 
-class V4l2Source : public FrameSource {
+class V4l2Source final : public FrameSource {
  public:
   V4l2Source(std::string device, CameraSettings settings, const Clock& clock)
       : name_(std::move(device)), settings_(settings), clock_(clock) {}
+  V4l2Source(const V4l2Source&) = delete;
+  V4l2Source& operator=(const V4l2Source&) = delete;
   ~V4l2Source() override { close(); }
 
   void open() override;
