@@ -1,5 +1,6 @@
 #include "detect/ego_motion.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "geometry/angles.h"
@@ -24,16 +25,25 @@ struct NormalEquations {
              right.z + weight * residual * g[2]};
   }
 
-  // By Cramer's rule; the prior keeps the matrix well away from singular.
+  // By Cramer's rule; the prior keeps the matrix well away from singular. Symmetric: rows are
+  // columns.
   Vec3 solution() const {
-    const auto cross = [](const Vec3& a, const Vec3& b) {
-      return Vec3{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-    };
-    const auto& [a, b, c] = matrix.rows;  // symmetric: rows are columns
-    const double determinant = dot(a, cross(b, c));
-    return {dot(right, cross(b, c)) / determinant, dot(a, cross(right, c)) / determinant,
-            dot(a, cross(b, right)) / determinant};
+    const auto& [a, b, c] = matrix.rows;
+    return {dot(right, cross(b, c)) / determinant(), dot(a, cross(right, c)) / determinant(),
+            dot(a, cross(b, right)) / determinant()};
   }
+  // The diagonal of the inverse: the variances of forward, left and turn.
+  Vec3 variances() const {
+    const auto& [a, b, c] = matrix.rows;
+    return {cross(b, c).x / determinant(), cross(c, a).y / determinant(),
+            cross(a, b).z / determinant()};
+  }
+
+ private:
+  static Vec3 cross(const Vec3& a, const Vec3& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  }
+  double determinant() const { return dot(matrix.rows[0], cross(matrix.rows[1], matrix.rows[2])); }
 };
 
 void add_sighting(NormalEquations& equations, const Sighting& sighting, const EgoMotion& motion) {
@@ -56,7 +66,7 @@ void add_sighting(NormalEquations& equations, const Sighting& sighting, const Eg
   equations.add(range_gradient, range_error, weight / sighting.range_variance);
 }
 
-void add_prior(NormalEquations& equations, const MotionPrior& prior, const EgoMotion& motion) {
+void add_prior(NormalEquations& equations, const MotionEstimate& prior, const EgoMotion& motion) {
   const double shift = 1 / (prior.shift_sigma * prior.shift_sigma);
   const double turn = 1 / (prior.turn_sigma * prior.turn_sigma);
   equations.add({1, 0, 0}, prior.mean.forward - motion.forward, shift);
@@ -72,17 +82,21 @@ GroundPoint moved(const GroundPoint& point, const EgoMotion& motion) {
   return {c * x + s * y, -s * x + c * y};
 }
 
-EgoMotion estimate_motion(std::span<const Sighting> sightings, const MotionPrior& prior) {
-  EgoMotion motion = prior.mean;
+MotionEstimate estimate_motion(std::span<const Sighting> sightings, const MotionEstimate& prior) {
+  MotionEstimate estimate = prior;
+  EgoMotion& motion = estimate.mean;
   for (int step = 0; step < 8; ++step) {
     NormalEquations equations;
     add_prior(equations, prior, motion);
     for (const Sighting& sighting : sightings) add_sighting(equations, sighting, motion);
     const Vec3 change = equations.solution();
+    const Vec3 variances = equations.variances();
     motion = {motion.forward + change.x, motion.left + change.y, motion.turn + change.z};
+    estimate.shift_sigma = std::sqrt(std::max(variances.x, variances.y));
+    estimate.turn_sigma = std::sqrt(variances.z);
     if (norm(change) < 1e-6) break;
   }
-  return motion;
+  return estimate;
 }
 
 }  // namespace bole

@@ -29,8 +29,8 @@ struct Sighting {
   double bearing_variance = 0, range_variance = 0;  ///< of both ends together
 };
 
-/// What is expected of the motion before the trees are looked at, with standard deviations.
-struct MotionPrior {
+/// A motion with standard deviations.
+struct MotionEstimate {
   EgoMotion mean;
   double shift_sigma = 0.1;  ///< metres
   double turn_sigma = 0.1;   ///< radians
@@ -38,7 +38,7 @@ struct MotionPrior {
 
 /// The motion that explains the sightings and the prior best: Gauss-Newton over bearings and
 /// ranges, sightings weighted down by Cauchy's function of their own misfit, so that a wrong pair
-/// costs little. Without sightings the prior's mean.
-EgoMotion estimate_motion(std::span<const Sighting> sightings, const MotionPrior& prior);
+/// costs little. Without sightings the prior.
+MotionEstimate estimate_motion(std::span<const Sighting> sightings, const MotionEstimate& prior);
 
 }  // namespace bole

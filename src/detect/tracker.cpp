@@ -33,8 +33,10 @@ LineOfSight seen_from(const GroundPoint& p, double xx, double xy, double yy) {
 }
 
 double bearing_variance(const Tree& tree) { return squared(std::max(tree.bearing_sigma, 0.003F)); }
+// A robot that pitches by 0.2 degrees a frame shifts the foot of a tree at r metres by about
+// 0.004 r^2 metres, whatever the detector knows.
 double range_variance(const Tree& tree) {
-  return squared(std::max(tree.range_sigma, 0.01F * tree.range + 0.02F));
+  return squared(std::max(tree.range_sigma, 0.004F * tree.range * tree.range + 0.02F));
 }
 double diameter_variance(const Tree& tree) { return squared(std::max(tree.diameter_sigma, 0.01F)); }
 
@@ -54,37 +56,42 @@ void Tracker::reset() {
   motion_seconds_.reset();
 }
 
-// The robot goes on as it went, within what it can accelerate; before it was seen to move it may be
-// moving at any speed a ground robot has.
-MotionPrior Tracker::prior(double elapsed) const {
-  if (!motion_seconds_ || *motion_seconds_ <= 0)
-    return {{}, 0.02 + 2.0 * elapsed, 0.01 + 1.5 * elapsed};
+// The robot goes on as it went, as far as that is known, within what it can accelerate; and however
+// it was seen to go, it is a ground robot, of limited speed. Where no tree tells its motion any
+// more, the second wins: it is taken to stand still, at any speed it may have.
+MotionEstimate Tracker::prior(double elapsed) const {
+  const MotionEstimate any{{}, 0.02 + 1.5 * elapsed, 0.01 + 0.5 * elapsed};
+  if (!motion_seconds_ || *motion_seconds_ <= 0) return any;
   const double ratio = elapsed / *motion_seconds_;
-  return {{motion_.forward * ratio, motion_.left * ratio, motion_.turn * ratio},
-          0.01 + 3.0 * elapsed * elapsed,
-          0.005 + 5.0 * elapsed * elapsed};
+  const double shift =
+      squared(motion_.shift_sigma * ratio) + squared(0.01 + 3.0 * elapsed * elapsed);
+  const double turn =
+      squared(motion_.turn_sigma * ratio) + squared(0.005 + 5.0 * elapsed * elapsed);
+  const double shift_share = squared(any.shift_sigma) / (squared(any.shift_sigma) + shift);
+  const double turn_share = squared(any.turn_sigma) / (squared(any.turn_sigma) + turn);
+  return {{motion_.mean.forward * ratio * shift_share, motion_.mean.left * ratio * shift_share,
+           motion_.mean.turn * ratio * turn_share},
+          std::sqrt(shift * shift_share),
+          std::sqrt(turn * turn_share)};
 }
 
-std::span<const int> Tracker::match(std::span<const Tree> trees, const EgoMotion& motion,
-                                    const MotionPrior& slack) {
+std::span<const int> Tracker::match(std::span<const Tree> trees, const MotionEstimate& motion) {
   costs_.assign(trees.size() * tracks_.size(), Assignment::kForbidden);
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
     const Track& track = tracks_[k];
-    const GroundPoint at = moved(track.position, motion);
     // The track's covariance is turned with it only once the motion is settled: the turn is small.
-    const LineOfSight expected = seen_from(at, track.xx, track.xy, track.yy);
+    const LineOfSight expected =
+        seen_from(moved(track.position, motion.mean), track.xx, track.xy, track.yy);
+    const double reach =
+        farthest_step(expected.range) + motion.shift_sigma + motion.turn_sigma * expected.range;
     for (std::size_t i = 0; i < trees.size(); ++i) {
       const Tree& tree = trees[i];
       const double bearing_error = wrap_angle(tree.bearing - expected.bearing);
       const double range_error = tree.range - expected.range;
-      const double off = std::hypot(range_error, bearing_error * expected.range);
-      if (off >
-          farthest_step(expected.range) + slack.shift_sigma + slack.turn_sigma * expected.range) {
-        continue;
-      }
-      const double shift = squared(slack.shift_sigma);
+      if (std::hypot(range_error, bearing_error * expected.range) > reach) continue;
+      const double shift = squared(motion.shift_sigma);
       const double across = expected.bearing_variance + bearing_variance(tree) +
-                            squared(slack.turn_sigma) + shift / squared(expected.range);
+                            squared(motion.turn_sigma) + shift / squared(expected.range);
       const double along = expected.range_variance + range_variance(tree) + shift;
       const double misfit = squared(bearing_error) / across + squared(range_error) / along;
       if (misfit > kGate) continue;
@@ -98,11 +105,10 @@ std::span<const int> Tracker::match(std::span<const Tree> trees, const EgoMotion
 
 // Pairs and motion depend on each other: pair with the slack of the prior, estimate, pair anew with
 // the slack of what is then left open.
-EgoMotion Tracker::estimate(std::span<const Tree> trees, const MotionPrior& prior) {
-  EgoMotion motion = prior.mean;
-  for (const double slack : {1.0, 0.3}) {
-    const std::span<const int> pairs =
-        match(trees, motion, {{}, slack * prior.shift_sigma, slack * prior.turn_sigma});
+MotionEstimate Tracker::estimate(std::span<const Tree> trees, const MotionEstimate& prior) {
+  MotionEstimate motion = prior;
+  for (int round = 0; round < 2; ++round) {
+    const std::span<const int> pairs = match(trees, motion);
     sightings_.clear();
     for (std::size_t i = 0; i < trees.size(); ++i) {
       if (pairs[i] < 0) continue;
@@ -187,13 +193,13 @@ void Tracker::update(std::span<Tree> trees, double elapsed,
     elapsed = 0;
   }
   const bool first = tracks_.empty();
-  const MotionPrior expected = odometry ? MotionPrior{*odometry, 0.01, 0.005} : prior(elapsed);
-  motion_ = odometry ? *odometry : estimate(trees, expected);
+  motion_ = odometry ? MotionEstimate{*odometry, 0.01, 0.005} : estimate(trees, prior(elapsed));
   motion_seconds_ = first ? std::nullopt : std::optional(elapsed);
-  move_tracks(motion_, elapsed);
+  move_tracks(motion_.mean, elapsed);
 
-  constexpr MotionPrior kSettled{{}, 0.02, 0.005};
-  const std::span<const int> pairs = match(trees, {}, kSettled);
+  // However badly the motion is known: an id that jumps a metre is worse than a new one.
+  const std::span<const int> pairs =
+      match(trees, {{}, std::min(motion_.shift_sigma, 0.05), std::min(motion_.turn_sigma, 0.01)});
   for (std::size_t i = 0; i < trees.size(); ++i) {
     if (pairs[i] >= 0) {
       fuse(tracks_[pairs[i]], trees[i]);

@@ -25,7 +25,7 @@ class Tracker {
   void update(std::span<Tree> trees, double elapsed, const std::optional<EgoMotion>& odometry = {});
 
   /// The motion between the last two frames, as measured or estimated.
-  const EgoMotion& last_motion() const { return motion_; }
+  const EgoMotion& last_motion() const { return motion_.mean; }
 
   /// Forgets every tree (ids are never used again) and the motion.
   void reset();
@@ -39,16 +39,16 @@ class Tracker {
     double unseen = 0;  // seconds
   };
 
-  MotionPrior prior(double elapsed) const;
-  EgoMotion estimate(std::span<const Tree> trees, const MotionPrior& prior);
-  std::span<const int> match(std::span<const Tree> trees, const EgoMotion& motion,
-                             const MotionPrior& slack);
+  MotionEstimate prior(double elapsed) const;
+  MotionEstimate estimate(std::span<const Tree> trees, const MotionEstimate& prior);
+  /// The track of each tree, -1 for none, if the robot has moved by `motion`, within its sigmas.
+  std::span<const int> match(std::span<const Tree> trees, const MotionEstimate& motion);
   void move_tracks(const EgoMotion& motion, double elapsed);
   static void fuse(Track& track, Tree& tree);
   Track begin(Tree& tree);
 
   std::vector<Track> tracks_;
-  EgoMotion motion_;
+  MotionEstimate motion_;
   std::optional<double> motion_seconds_;  // what motion_ took; nothing before the second frame
   std::int32_t next_id_ = 0;
   Assignment assignment_;

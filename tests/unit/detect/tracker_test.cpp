@@ -101,6 +101,55 @@ TEST(Tracker, KeepsOneIdForEachTreeOfAWindingDrive) {
   EXPECT_LE(torn, 2) << "of " << ids_of_tree.size() << " trees";
 }
 
+TEST(Tracker, KeepsIdsWhileTheRobotPitchesAndFewTreesAreFound) {
+  Wood wood(11);
+  Tracker tracker;
+  std::map<int, std::set<int>> trees_of_id;
+  std::map<int, std::map<int, int>> sightings;  // of a tree, by id
+  int total = 0;
+  for (int frame = 0; frame < 300; ++frame) {
+    auto [found, which] = wood.frame(frame);
+    const double pitch = radians(0.7) * std::sin(0.9 * frame);  // of a camera 1 m up
+    for (Tree& tree : found) {
+      const double tangent = 1 / tree.range - pitch * std::cos(tree.bearing);
+      tree.range = static_cast<float>(1 / std::max(tangent, 0.05));
+    }
+    found.resize(found.size() / 2);
+    tracker.update(found, 0.1);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      trees_of_id[found[i].id].insert(which[i]);
+      ++sightings[which[i]][found[i].id];
+      ++total;
+    }
+  }
+  int main_ids = 0;
+  for (const auto& [tree, ids] : sightings) {
+    main_ids += std::ranges::max_element(ids, {}, [](const auto& e) { return e.second; })->second;
+  }
+  EXPECT_GT(main_ids, 0.9 * total);
+}
+
+TEST(Tracker, IsNotCarriedAwayByFalseAlarms) {
+  Tracker tracker;
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> bearing(-3.1F, 3.1F), range(2, 8);
+  for (int frame = 0; frame < 200; ++frame) {
+    std::vector<Tree> noise;
+    for (int k = 0; k < 4; ++k) {
+      Tree tree = seen({3, 0, 0.3}, {});
+      tree.bearing = bearing(random);
+      tree.range = range(random);
+      noise.push_back(tree);
+    }
+    tracker.update(noise, 0.1);
+    EXPECT_LT(std::abs(tracker.last_motion().turn), 0.25);
+    EXPECT_LT(std::hypot(tracker.last_motion().forward, tracker.last_motion().left), 0.5);
+  }
+  std::vector<Tree> none;
+  for (int frame = 0; frame < 20; ++frame) tracker.update(none, 0.1);
+  EXPECT_LT(std::abs(tracker.last_motion().turn), 0.01) << "nothing seen: taken to stand still";
+}
+
 TEST(Tracker, EstimatesTheRobotsMotionFromTheTrees) {
   Wood wood(3);
   Tracker tracker;
