@@ -25,18 +25,23 @@ def run():
         for core in range(2):
             stack.enter_context(Process(f"burner{core}", ["sh", "-c", "while :; do :; done"]))
         time.sleep(BUSY_S)
+        mark = listener.mark()
         camera.command("freeze")
-        _, status = listener.wait_for_state("stalled", 20)
-        wait_until(lambda: all_arrived(listener), 20, "the last list")
+        listener.wait_for_state("stalled", 20, mark)
+        status = wait_until(lambda: settled_status(listener), 20, "the last frame's list")
         return account(listener.lists(), status)
 
 
-def all_arrived(listener):
-    return listener.last_status()["lists"] == listener.lists()[-1]["seq"] + 1
+def settled_status(listener):
+    """The last status, once nothing is on its way from the camera to the bus any more."""
+    status = listener.last_status()
+    processed = status["lists"] + drops(status)["overwritten"] + drops(status)["unusable"]
+    arrived = listener.lists()[-1]["seq"] + 1
+    return status if processed == status["frames"] and arrived == status["lists"] else None
 
 
 def account(lists, status):
-    """Lists and drops together are the driver's frames, and no list is old."""
+    """Lists and drops together are the frames that the driver counted, up to the newest."""
     counted = drops(status)
     frames_of_driver = lists[-1]["sensor_seq"] + 1
     expect(status["lists"] + sum(counted.values()), frames_of_driver,
