@@ -20,7 +20,7 @@ def run():
         camera = stack.enter_context(Camera([frames.rendered("YUYV", SIZE)], rates=(30,)))
         listener = stack.enter_context(Listener())
         camera.plug()
-        boled = stack.enter_context(Boled(f"v4l2:{camera.link}", SIZE))
+        stack.enter_context(Boled(f"v4l2:{camera.link}", SIZE))
         listener.wait_for_list(60)
         for core in range(2):
             stack.enter_context(Process(f"burner{core}", ["sh", "-c", "while :; do :; done"]))
@@ -47,5 +47,11 @@ def account(lists, status):
     expect(status["lists"] + sum(counted.values()), frames_of_driver,
            f"lists and drops {counted} against the driver's count")
     latencies_s = sorted((one["publish_mono_ns"] - one["capture_mono_ns"]) / 1e9 for one in lists)
+    published_s = [one["publish_mono_ns"] / 1e9 for one in lists]
+    longest_s = max(later - earlier for earlier, later in zip(published_s, published_s[1:]))
+    # The newest frame waits for the one in processing, and is then processed itself; older ones
+    # would have queued.
+    assert latencies_s[-1] <= 2 * longest_s, (
+        f"a list came {latencies_s[-1]:.2f} s after its frame, at most {longest_s:.2f} s apart")
     return (f"{frames_of_driver} frames, {status['lists']} lists, drops {counted}, latency median "
             f"{latencies_s[len(latencies_s) // 2] * 1e3:.0f} ms, max {latencies_s[-1] * 1e3:.0f} ms")
