@@ -33,11 +33,11 @@ def comes_back_different(other_mode, usable):
                 if usable:
                     listener.wait_for_new_list(20)
                 else:
-                    # "gone" turns into why it cannot be used, once in the log
                     listener.wait_for_status(
                         lambda status: "no 640 x 480 frames" in status["state_reason"], 20,
                         "a reason that names the size", mark)
-                    expect(len(boled.log_lines("1280 x 720")), 1, "log lines about the size")
+                    boled.wait_for_log("no 640 x 480 frames", 10)
+                    expect(len(boled.log_lines("no 640 x 480 frames")), 1, "log lines about it")
             with Camera([first_mode]) as camera:
                 camera.plug()
                 listener.wait_for_new_list(20)
