@@ -28,6 +28,7 @@ class Bands {
   int count() const { return count_; }
   int width() const { return width_; }
   int margin() const { return margin_; }
+  std::ptrdiff_t pitch() const { return pitch_; }  ///< from a band's sums to the next's
 
   /// sum(b)[x] = the sum of the log brightness over columns [-margin, x) of band b, for x in
   /// [-margin, width + margin].

@@ -3,20 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "detect/template_kernels.h"
 #include "geometry/ground.h"
 
 namespace bole {
 namespace {
 
-constexpr int kFull = 64;           // a response of full contrast
-constexpr double kContrast = 0.20;  // of log brightness: that is full contrast
-constexpr int kAgainst = 19;        // what a band must reach to count for a trunk
-constexpr int kAgainstAbove = 35;   // the same above the horizon
+constexpr double kContrast = 0.20;  // of log brightness: full contrast
 constexpr int kLeastEvidence = 64;  // of a candidate
 constexpr double kWidthStep = 1.15;
 constexpr double kNarrowest = 4;  // columns
 constexpr double kSlope = 0.30;   // rising ground shifts feet by up to this tangent
-constexpr int kChunk = 64;
 
 int widest_template(const DetectorSetup& setup) {
   const double widest =
@@ -26,7 +23,9 @@ int widest_template(const DetectorSetup& setup) {
 
 }  // namespace
 
-int Templates::margin(const DetectorSetup& setup) { return widest_template(setup) * 3 / 2 + 48; }
+int Templates::margin(const DetectorSetup& setup) {
+  return widest_template(setup) * 3 / 2 + 4 * kTemplateChunk + 48;
+}
 
 Templates::Templates(const DetectorSetup& setup, int most_candidates)
     : columns_(setup.panorama.columns),
@@ -44,7 +43,7 @@ Templates::Templates(const DetectorSetup& setup, int most_candidates)
 
   for (const int flank : {2, 3, 5, 8, 12, 18, 28}) {
     const int step = flank >= 18 ? 4 : flank >= 8 ? 2 : 1;
-    const int pitch = (width_ + widest_ + 8) / step + kChunk;
+    const int pitch = (width_ + widest_ + 8) / step + 2 * kTemplateChunk;
     flanks_.push_back(
         {flank, step, pitch, std::vector<std::int16_t>(static_cast<std::size_t>(bands_) * pitch)});
   }
@@ -72,15 +71,23 @@ Templates::Templates(const DetectorSetup& setup, int most_candidates)
     const double down = setup.height / std::max(0.5 * nearest_range, nearest_range * (1 - s));
     size.first_foot = static_cast<int>(band_of_tangent(-kSlope));
     size.last_foot = static_cast<int>(std::ceil(band_of_tangent(1.15 * down + 0.05)));
+    size.rank_factor = std::pow(size.width, -0.4);
     if (size.last_foot > size.first_foot) sizes_.push_back(size);
   }
   for (auto& peaks : peaks_) {
     peaks.resize(sizes_.size());
     for (std::size_t i = 0; i < sizes_.size(); ++i) {
-      const int n = (width_ / flanks_[sizes_[i].flank].step + kChunk) / kChunk * kChunk;
+      const int n = width_ / flanks_[sizes_[i].flank].step + kTemplateChunk;
       peaks[i].evidence.resize(n);
       peaks[i].foot.resize(n);
     }
+  }
+  for (int band = 0; band < bands_; ++band) {
+    const auto first =
+        setup.seen.pixels.begin() + static_cast<std::ptrdiff_t>(band) * Bands::kRows * width_;
+    const bool whole =
+        std::find(first, first + Bands::kRows * width_, 0) == first + Bands::kRows * width_;
+    wholly_seen_.push_back(whole && wraps_);
   }
   found_.reserve(20000);
   kept_.reserve(most_);
@@ -88,19 +95,17 @@ Templates::Templates(const DetectorSetup& setup, int most_candidates)
 
 void Templates::respond(const Bands& bands, Flank& flank) const {
   const int k = flank.width;
-  const float scale = static_cast<float>(kFull / (kContrast * Bands::kScale * k));
-  const int n = std::min(flank.pitch, (width_ + bands.margin() - k) / flank.step);
+  const float scale = static_cast<float>(kFullResponse / (kContrast * Bands::kScale * k));
+  const int n = std::min(flank.pitch - kTemplateChunk,
+                         (width_ + bands.margin() - k) / flank.step - kTemplateChunk);
   for (int band = 0; band < bands_; ++band) {
     std::int16_t* response = flank.response.data() + static_cast<std::size_t>(band) * flank.pitch;
-    const std::int32_t* sum = bands.sum(band);
+    edge_responses(bands.sum(band), k, flank.step, scale, n, response);
+    if (wholly_seen_[band]) continue;
     const std::uint8_t* seen = bands.seen(band);
     for (int i = 0; i < n; ++i) {
       const int x = i * flank.step;
-      const float r = static_cast<float>(sum[x + k] - 2 * sum[x] + sum[x - k]) * scale;
-      const float clipped =
-          std::min(static_cast<float>(kFull), std::max(-static_cast<float>(kFull), r));
-      const int see = seen[x - k] & seen[x - 1] & seen[x] & seen[x + k - 1];
-      response[i] = static_cast<std::int16_t>(static_cast<int>(clipped) * see);
+      if ((seen[x - k] & seen[x - 1] & seen[x] & seen[x + k - 1]) == 0) response[i] = 0;
     }
   }
 }
@@ -108,50 +113,18 @@ void Templates::respond(const Bands& bands, Flank& flank) const {
 void Templates::accumulate(int size_index) {
   const Size& size = sizes_[size_index];
   const Flank& flank = flanks_[size.flank];
-  const int across = size.width / flank.step;
-  const int n = static_cast<int>(peaks_[0][size_index].evidence.size());
-  for (int start = 0; start < n; start += kChunk) {
-    std::int16_t sum[2][kChunk] = {}, best[2][kChunk] = {}, foot[2][kChunk] = {};
-    for (int band = 0; band < size.last_foot; ++band) {
-      const std::int16_t* left =
-          flank.response.data() + static_cast<std::size_t>(band) * flank.pitch + start;
-      const std::int16_t* right = left + across;
-      const bool above = band < horizon_band_;
-      const auto end = static_cast<std::int16_t>(band + 1);
-      const auto open = static_cast<std::int16_t>(band + 1 >= size.first_foot ? 0 : 32000);
-      for (int i = 0; i < kChunk; ++i) {
-        const auto l = static_cast<std::int16_t>(-left[i]);
-        const std::int16_t r = right[i];
-        std::int16_t value[2];
-        if (above) {
-          const auto soft = [](int v) { return std::max(v, -(v * 11) / 16); };
-          for (int p = 0; p < 2; ++p) {
-            const int a = soft(p ? -l : l), c = soft(p ? -r : r);
-            value[p] = static_cast<std::int16_t>(
-                (((a + c) / 4 + std::min(a, c) / 2 - kAgainstAbove) * 13) / 32);
-          }
-        } else {
-          const int both = (l + r) / 4;
-          value[0] = static_cast<std::int16_t>(both + std::min(l, r) / 2 - kAgainst);
-          value[1] = static_cast<std::int16_t>(-both - std::max(l, r) / 2 - kAgainst);
-        }
-        for (int p = 0; p < 2; ++p) {
-          const auto s = static_cast<std::int16_t>(std::max<int>(sum[p][i] + value[p], 0));
-          sum[p][i] = s;
-          const bool better = s > best[p][i] + open;
-          best[p][i] = better ? s : best[p][i];
-          foot[p][i] = better ? end : foot[p][i];
-        }
-      }
-    }
-    for (int p = 0; p < 2; ++p) {
-      Peaks& peaks = peaks_[p][size_index];
-      for (int i = 0; i < kChunk; ++i) {
-        peaks.evidence[start + i] = best[p][i];
-        peaks.foot[start + i] = static_cast<std::uint8_t>(foot[p][i]);
-      }
-    }
+  ColumnSums sums{.responses = flank.response.data(),
+                  .pitch = flank.pitch,
+                  .across = size.width / flank.step,
+                  .horizon = horizon_band_,
+                  .first_foot = size.first_foot,
+                  .last_foot = size.last_foot,
+                  .count = width_ / flank.step};
+  for (const int polarity : {0, 1}) {
+    sums.evidence[polarity] = peaks_[polarity][size_index].evidence.data();
+    sums.foot[polarity] = peaks_[polarity][size_index].foot.data();
   }
+  sum_columns(sums);
 }
 
 // Whether a template of the neighbouring size, about the same centre, has more evidence.
@@ -193,16 +166,17 @@ void Templates::collect(int size_index, int polarity) {
     if (found_.size() == found_.capacity()) return;
     found_.push_back({static_cast<float>(i * step), static_cast<float>(size.width),
                       static_cast<float>(peaks.foot[i] * Bands::kRows),
-                      static_cast<float>(evidence) / kFull, polarity == 0});
+                      static_cast<float>(evidence) / kFullResponse, polarity == 0,
+                      static_cast<float>(evidence * size.rank_factor)});
   }
 }
 
 // Keeps the most evident; of near twins only the better.
 void Templates::thin_out() {
   std::sort(found_.begin(), found_.end(), [](const Candidate& a, const Candidate& b) {
-    return a.evidence != b.evidence ? a.evidence > b.evidence
-           : a.left != b.left       ? a.left < b.left
-                                    : a.width < b.width;
+    return a.rank != b.rank   ? a.rank > b.rank
+           : a.left != b.left ? a.left < b.left
+                              : a.width < b.width;
   });
   kept_.clear();
   for (const Candidate& c : found_) {

@@ -16,6 +16,7 @@ struct Candidate {
   float foot = 0;      ///< row just below the visible trunk
   float evidence = 0;  ///< bands of full contrast, less what speaks against
   bool dark = true;    ///< darker than what is beside it
+  float rank = 0;      ///< evidence, wide templates held back: they gather more of it from nothing
 };
 
 /// Contrast templates: a trunk is a pair of opposite edges that run down the image together, and it
@@ -38,8 +39,9 @@ class Templates {
 
  private:
   struct Size {
-    int width = 0;                      // columns
-    int flank = 0;                      // index into flanks_
+    int width = 0;  // columns
+    int flank = 0;  // index into flanks_
+    double rank_factor = 1;
     int first_foot = 0, last_foot = 0;  // bands: the foot is the lower border of one of them
   };
   struct Flank {
@@ -50,7 +52,7 @@ class Templates {
   };
   struct Peaks {  // best sum over all feet, for every left edge
     std::vector<std::int16_t> evidence;
-    std::vector<std::uint8_t> foot;
+    std::vector<std::int16_t> foot;
   };
 
   void respond(const Bands& bands, Flank& flank) const;
@@ -61,6 +63,7 @@ class Templates {
 
   int columns_, width_, bands_, horizon_band_, widest_;
   std::size_t most_;
+  std::vector<std::uint8_t> wholly_seen_;  // bands without a masked pixel
   bool wraps_;
   double focal_;
   std::vector<Size> sizes_;

@@ -14,6 +14,10 @@ constexpr std::array<float, F::kAcross + 1> kBorders = {
 constexpr float kReference = 1440 / 6.2831853F;  // the focal length that pixel limits are meant for
 constexpr float kLeastSpread = 0.06F;            // of log brightness
 
+// Whole numbers near columns and rows, which stay far from the limits.
+int floor_of(float x) { return static_cast<int>(x + 16384.0F) - 16384; }
+int nearest(float x) { return floor_of(x + 0.5F); }
+
 }  // namespace
 
 float foot_unit(const TrunkShape& shape, double focal) {
@@ -63,10 +67,10 @@ float FeatureReader::read_grid(const Bands& bands, const TrunkShape& shape, int 
     std::array<float, F::kAcross + 1> at;
     for (int i = 0; i <= F::kAcross; ++i) {
       const float x = middle + kBorders[i] * w;
-      const auto whole = static_cast<int>(std::floor(x));
+      const int whole = floor_of(x);
       const float rest = x - static_cast<float>(whole);
       // Differences of large sums: subtract the first border's in whole numbers.
-      const std::int32_t base = sum[static_cast<int>(std::floor(middle - 1.5F * w))];
+      const std::int32_t base = sum[floor_of(middle - 1.5F * w)];
       at[i] = static_cast<float>(sum[whole] - base) +
               rest * static_cast<float>(sum[whole + 1] - sum[whole]);
     }
@@ -106,8 +110,8 @@ float FeatureReader::read_grid(const Bands& bands, const TrunkShape& shape, int 
 
 // Mean log brightness of a row between two columns.
 float FeatureReader::strip(const std::uint8_t* row, float from, float to) const {
-  int a = static_cast<int>(std::lround(from));
-  const int n = std::max(1, static_cast<int>(std::lround(to)) - a);
+  const int a = nearest(from);
+  const int n = std::max(1, nearest(to) - a);
   int sum = 0;
   if (a >= 0 && a + n <= width_) {
     for (int x = a; x < a + n; ++x) sum += row[x];
@@ -131,7 +135,7 @@ void FeatureReader::read_foot(const PanoramaView& panorama, const TrunkShape& sh
     const float high = spacing > 1 ? place - 0.5F * spacing : std::floor(place);
     for (int k = 0; k < 2; ++k) {
       const float at = high + static_cast<float>(k) * spacing;
-      const int i = std::clamp(static_cast<int>(std::lround(at)), 0, rows_ - 1);
+      const int i = std::clamp(nearest(at), 0, rows_ - 1);
       const float weight = spacing > 1 ? 0.5F : k == 0 ? 1 - (place - high) : place - high;
       const float row = static_cast<float>(i) + 0.5F - shape.foot;
       const float middle = shape.centre() + shape.slope() * row;

@@ -7,11 +7,12 @@ namespace bole {
 namespace {
 
 constexpr float kWorthASecondLook = -4.0F;  // logit
+constexpr float kWorthOtherFeet = -6.0F;    // logit
 constexpr float kWorthAnswering = -3.5F;    // logit
 
 // The farther the search goes, the more trunks there are.
 int most_candidates(const Search& search) {
-  return static_cast<int>(std::clamp(25 * search.range.high, 160.0, 1000.0));
+  return static_cast<int>(std::clamp(140 + 27 * (search.range.high - 8), 140.0, 1000.0));
 }
 
 }  // namespace
@@ -44,7 +45,7 @@ std::span<Trunk> TrunkFinder::find(const PanoramaView& panorama) {
   for (const Candidate& candidate : candidates(panorama)) {
     Trunk trunk;
     if (!fit(candidate, trunk.shape, trunk.fit)) continue;
-    look(panorama, trunk, candidate.evidence);
+    if (look(panorama, trunk, candidate.evidence) < kWorthOtherFeet) continue;
     std::array<float, EdgeFitter::kOtherFeet> feet;
     const int count = other_feet(trunk.shape, feet);
     for (int i = 0; i < count; ++i) {
@@ -57,18 +58,21 @@ std::span<Trunk> TrunkFinder::find(const PanoramaView& panorama) {
   return kept_;
 }
 
-void TrunkFinder::look(const PanoramaView& panorama, Trunk trunk, float evidence) {
+// Judges a trunk; returns the logit at first sight.
+float TrunkFinder::look(const PanoramaView& panorama, Trunk trunk, float evidence) {
   TrunkFeatures::Values features;
   read(panorama, trunk.shape, trunk.fit, evidence, features);
   Judgement judgement = judge(features);
-  if (judgement.logit < kWorthASecondLook) return;
+  const float at_first_sight = judgement.logit;
+  if (at_first_sight < kWorthASecondLook) return at_first_sight;
 
   // A second look from where the first one says that the trunk is.
   trunk.shape = corrected(trunk.shape, judgement, focal_);
   refine(trunk.shape, trunk.fit);
   read(panorama, trunk.shape, trunk.fit, evidence, features);
   judgement = judge(features);
-  if (judgement.logit < kWorthAnswering || trunks_.size() == trunks_.capacity()) return;
+  if (judgement.logit < kWorthAnswering || trunks_.size() == trunks_.capacity())
+    return at_first_sight;
   const float width = trunk.shape.width(), unit = foot_unit(trunk.shape, focal_);
   trunk.shape = corrected(trunk.shape, judgement, focal_);
   trunk.probability = 1 / (1 + std::exp(-judgement.logit));
@@ -76,6 +80,7 @@ void TrunkFinder::look(const PanoramaView& panorama, Trunk trunk, float evidence
   trunk.width_sigma = std::exp(judgement.log_sigma[1]);
   trunk.foot_sigma = unit * std::exp(judgement.log_sigma[2]);
   trunks_.push_back(trunk);
+  return at_first_sight;
 }
 
 // Whether two outlines explain the same picture: one covers most of the other, or they take one

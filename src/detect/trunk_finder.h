@@ -41,7 +41,7 @@ class TrunkFinder {
             float evidence, TrunkFeatures::Values& out) const;
 
  private:
-  void look(const PanoramaView& panorama, Trunk trunk, float evidence);
+  float look(const PanoramaView& panorama, Trunk trunk, float evidence);
   void suppress();
   bool same_pixels(const TrunkShape& a, const TrunkShape& b) const;
 

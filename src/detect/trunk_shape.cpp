@@ -7,9 +7,6 @@
 namespace bole {
 namespace {
 
-constexpr int kMostBands = 80;
-constexpr int kWindow = 64;  // columns about an edge that are looked at
-constexpr int kSlopes = 9;
 constexpr float kSlopeStep = 0.015F;  // columns a row
 constexpr float kContrast = 0.22F * Bands::kScale;
 constexpr float kStrongContrast = 1.2F * Bands::kScale;
@@ -20,6 +17,11 @@ constexpr float kWrongSign = -0.7F;  // what a response of the wrong sign counts
 float response(const std::int32_t* sum, int x, int k) {
   return static_cast<float>(sum[x + k] - 2 * sum[x] + sum[x - k]) / static_cast<float>(k);
 }
+
+// To the nearest whole number; columns and rows stay far from the limits.
+int nearest(float x) { return static_cast<int>(x + 16384.5F) - 16384; }
+
+float slope_of(int s) { return kSlopeStep * static_cast<float>(s - EdgeWindow::kSlopes / 2); }
 
 float row_of(int band) { return (static_cast<float>(band) + 0.5F) * Bands::kRows; }
 
@@ -58,38 +60,30 @@ int EdgeFitter::first_band(float left, float right) const {
   return first;
 }
 
-EdgeFitter::Line EdgeFitter::search(const Bands& bands, Line start, float foot, Extent extent,
-                                    int flank, int reach, int sign) const {
-  const int origin = static_cast<int>(std::lround(start.column)) - kWindow / 2;
-  std::array<std::array<float, kWindow>, kMostBands> responses;
-  const float scale = static_cast<float>(sign) / static_cast<float>(flank);
-  for (int band = extent.first; band < extent.last; ++band) {
-    auto& line = responses[band - extent.first];
-    const std::int32_t* sum = bands.sum(band) + origin;
-    const float wrong = band < horizon_band_ ? kWrongSign : 1.0F;
-    for (int i = 0; i < kWindow; ++i) {
-      const float r = static_cast<float>(sum[i + flank] - 2 * sum[i] + sum[i - flank]) * scale;
-      const float c = std::min(kContrast, std::max(-kContrast, r));
-      line[i] = c < 0 ? c * wrong : c;
-    }
-  }
-  constexpr int kPlaces = 32;
+EdgeFitter::Line EdgeFitter::search(const Bands& bands, Line start, const Starts& starts,
+                                    Extent extent, int flank, int reach, int sign) const {
+  constexpr int kPlaces = EdgeWindow::kPlaces;
+  const int origin = nearest(start.column) - EdgeWindow::kColumns / 2;
+  EdgeTotals totals;
+  sum_edges({.sums = bands.sum(extent.first) + origin,
+             .pitch = bands.pitch(),
+             .bands = extent.count(),
+             .horizon = horizon_band_ - extent.first,
+             .flank = flank,
+             .sign = sign,
+             .limit = static_cast<int>(kContrast),
+             .starts = &starts},
+            totals);
   float best = -1e9F;
   Line found = start;
-  for (int s = 0; s < kSlopes; ++s) {
-    const float slope = kSlopeStep * static_cast<float>(s - kSlopes / 2);
-    std::array<float, kPlaces> total{};
-    for (int band = extent.first; band < extent.last; ++band) {
-      const int shift = static_cast<int>(std::lround(slope * (row_of(band) - foot)));
-      const float* line = responses[band - extent.first].data() +
-                          std::clamp(shift + kWindow / 2 - kPlaces / 2, 0, kWindow - kPlaces);
-      for (int i = 0; i < kPlaces; ++i) total[i] += line[i];
-    }
+  for (int s = 0; s < EdgeWindow::kSlopes; ++s) {
     for (int i = kPlaces / 2 - reach; i <= kPlaces / 2 + reach; ++i) {
-      const float value = total[i] * (1 - 0.002F * static_cast<float>(std::abs(i - kPlaces / 2)));
+      const float value = static_cast<float>(totals[s][i]) *
+                          (1 - 0.002F * static_cast<float>(std::abs(i - kPlaces / 2)));
       if (value <= best) continue;
       best = value;
-      found = {static_cast<float>(origin + kWindow / 2 + i - kPlaces / 2), slope};
+      found = {static_cast<float>(origin + EdgeWindow::kColumns / 2 + i - kPlaces / 2),
+               slope_of(s)};
     }
   }
   return found;
@@ -98,11 +92,11 @@ EdgeFitter::Line EdgeFitter::search(const Bands& bands, Line start, float foot, 
 EdgeFitter::Placed EdgeFitter::place(const Bands& bands, Line& line, float foot, Extent extent,
                                      int flank, int sign) const {
   constexpr int kReach = 3;
-  std::array<float, kMostBands> rows, places, weights;
+  std::array<float, EdgeWindow::kMostBands> rows, places, weights;
   int n = 0;
   for (int band = extent.first; band < extent.last; ++band) {
     const float row = row_of(band) - foot;
-    const int middle = static_cast<int>(std::lround(line.column + line.slope * row));
+    const int middle = nearest(line.column + line.slope * row);
     std::array<float, 2 * kReach + 1> r;
     int peak = 0;
     for (int o = -kReach; o <= kReach; ++o) {
@@ -163,8 +157,7 @@ void EdgeFitter::judge(const Bands& bands, const TrunkShape& shape, Extent exten
                              shape.right + shape.right_slope * row};
     float r[2];
     for (int e = 0; e < 2; ++e) {
-      const float value =
-          response(bands.sum(band), static_cast<int>(std::lround(places[e])), flank);
+      const float value = response(bands.sum(band), nearest(places[e]), flank);
       r[e] = std::clamp((e == 0 ? -sign : sign) * value / kContrast, -1.0F, 1.0F);
     }
     if (band < horizon_band_) {
@@ -194,7 +187,7 @@ EdgeFitter::Extent EdgeFitter::extent(const Bands& bands, float left, float widt
   const float flare = std::min(0.5F * width, 0.3F * foot);
   Extent extent;
   extent.last = std::clamp(static_cast<int>((foot - flare) / Bands::kRows), 0, bands.count());
-  extent.first = std::max(first_band(left, left + width), extent.last - kMostBands);
+  extent.first = std::max(first_band(left, left + width), extent.last - EdgeWindow::kMostBands);
   return extent;
 }
 
@@ -205,8 +198,17 @@ bool EdgeFitter::fit(const Bands& bands, const Candidate& c, TrunkShape& shape,
   const int flank = std::clamp(static_cast<int>(0.3F * c.width), 2, 8);
   const int reach = std::min(10, static_cast<int>(2 + 0.2F * c.width));
   const int sign = c.dark ? 1 : -1;
-  const Line left = search(bands, {c.left, 0}, c.foot, straight, flank, reach, -sign);
-  const Line right = search(bands, {c.left + c.width, 0}, c.foot, straight, flank, reach, sign);
+  Starts starts;
+  for (int band = straight.first; band < straight.last; ++band) {
+    for (int s = 0; s < EdgeWindow::kSlopes; ++s) {
+      const int shift = nearest(slope_of(s) * (row_of(band) - c.foot));
+      constexpr int kMiddle = (EdgeWindow::kColumns - EdgeWindow::kPlaces) / 2;
+      starts[band - straight.first][s] =
+          static_cast<std::uint8_t>(std::clamp(kMiddle + shift, 0, 2 * kMiddle));
+    }
+  }
+  const Line left = search(bands, {c.left, 0}, starts, straight, flank, reach, -sign);
+  const Line right = search(bands, {c.left + c.width, 0}, starts, straight, flank, reach, sign);
   if (right.column - left.column < 2.5F) return false;
   shape = {.foot = c.foot,
            .left = left.column,
@@ -239,7 +241,7 @@ int EdgeFitter::other_feet(const Bands& bands, const TrunkShape& shape,
   for (int band = first_band(shape.left, shape.right); band < lowest; ++band) {
     const float row = row_of(band) - shape.foot;
     const auto at = [&](float column, float slope) {
-      const int x = static_cast<int>(std::lround(column + slope * row));
+      const int x = nearest(column + slope * row);
       return std::clamp(sign * response(bands.sum(band), x, flank), -1.0F, 1.0F);
     };
     float l = -at(shape.left, shape.left_slope), r = at(shape.right, shape.right_slope);

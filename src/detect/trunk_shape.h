@@ -4,6 +4,7 @@
 #include <span>
 
 #include "detect/bands.h"
+#include "detect/edge_kernels.h"
 #include "detect/templates.h"
 
 namespace bole {
@@ -70,8 +71,9 @@ class EdgeFitter {
   };
   // What of a trunk is straight: from the upper border to above the root flare.
   Extent extent(const Bands& bands, float left, float width, float foot) const;
-  Line search(const Bands& bands, Line start, float foot, Extent extent, int flank, int reach,
-              int sign) const;
+  using Starts = std::array<std::array<std::uint8_t, EdgeWindow::kSlopes>, EdgeWindow::kMostBands>;
+  Line search(const Bands& bands, Line start, const Starts& starts, Extent extent, int flank,
+              int reach, int sign) const;
   Placed place(const Bands& bands, Line& line, float foot, Extent extent, int flank,
                int sign) const;
   void judge(const Bands& bands, const TrunkShape& shape, Extent extent, EdgeFit& fit) const;
