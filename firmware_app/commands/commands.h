@@ -9,9 +9,12 @@ namespace bole {
 
 void add_cameras(CLI::App& app);
 void add_detect(CLI::App& app);
+void add_doctor(CLI::App& app);
 void add_eval(CLI::App& app);
 void add_grab(CLI::App& app);
 void add_listen(CLI::App& app);
+void add_lut(CLI::App& app);
+void add_publish_fake(CLI::App& app);
 void add_sim(CLI::App& app);
 
 }  // namespace bole

@@ -1,29 +1,37 @@
 #include <poll.h>
 
+#include <array>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <set>
 
 #include <spdlog/spdlog.h>
 
 #include "base/clock.h"
+#include "base/errors.h"
 #include "base/stop_signals.h"
 #include "commands/commands.h"
+#include "geometry/angles.h"
 #include "publish/decoder.h"
 #include "publish/json_line.h"
 #include "publish/lcm_subscriber.h"
 #include "publish/stream_figures.h"
+#ifdef BOLE_ZENOH
+#include "publish/zenoh_session.h"
+#endif
 
 namespace bole {
 namespace {
 
 struct ListenOptions {
   std::string lcm_url = kDefaultLcmUrl;
+  std::string zenoh_endpoint;
   std::int64_t count = 0;
   bool json = false;
 };
 
-std::string_view state_name(std::int8_t state) {
+const char* state_name(std::int8_t state) {
   switch (state) {
     case status_t::STATE_STARTING:
       return "starting";
@@ -38,83 +46,140 @@ std::string_view state_name(std::int8_t state) {
     case status_t::STATE_STOPPING:
       return "stopping";
     default:
-      return "unknown";
+      return "in an unknown state";
   }
 }
 
 void print(const tree_list_t& list) {
-  std::printf("%lld %s:%s%s %d trees", static_cast<long long>(list.seq), list.camera.c_str(),
-              (list.flags & tree_list_t::FLAG_DEGRADED) != 0 ? " degraded," : "",
+  std::printf("%s %lld:%s%s %d trees", list.camera.c_str(), static_cast<long long>(list.seq),
+              (list.flags & tree_list_t::FLAG_DEGRADED) != 0 ? " cannot see well," : "",
               (list.flags & tree_list_t::FLAG_TRUNCATED) != 0 ? " truncated," : "", list.num_trees);
   for (const tree_t& tree : list.trees) {
-    std::printf("; #%d %+.1f deg %.2f m, %.2f m thick (%.2f)", tree.id, tree.bearing * 57.29578,
-                tree.range, tree.diameter, tree.score);
+    std::printf("; #%d %+.1f deg %.2f m, %.2f m thick (%.2f)", tree.id,
+                static_cast<double>(tree.bearing) * 180 / kPi, static_cast<double>(tree.range),
+                static_cast<double>(tree.diameter), static_cast<double>(tree.score));
   }
   std::printf("\n");
 }
 
 void print(const status_t& status) {
-  std::printf("status %s: %.*s%s%s%s%s, %.1f frames/s, %.1f lists/s, latency p99 %.2f ms\n",
-              status.camera.c_str(), static_cast<int>(state_name(status.state).size()),
-              state_name(status.state).data(), status.state_reason.empty() ? "" : " (",
-              status.state_reason.c_str(), status.state_reason.empty() ? "" : ")",
-              status.degraded != 0 ? (", degraded: " + status.degraded_reason).c_str() : "",
-              status.frame_rate, status.list_rate, status.latency_p99_ms);
+  std::string text = status.camera + " is " + state_name(status.state);
+  if (!status.state_reason.empty()) text += " (" + status.state_reason + ")";
+  if (status.degraded != 0) text += ", cannot see well: " + status.degraded_reason;
+  std::printf("%s; %.1f frames/s, %.1f lists/s, latency p99 %.2f ms\n", text.c_str(),
+              static_cast<double>(status.frame_rate), static_cast<double>(status.list_rate),
+              static_cast<double>(status.latency_p99_ms));
 }
 
-// Prints what arrives and keeps the figures.
+// Prints what arrives and keeps the figures of each stream, by its channel or key.
 class Listener {
  public:
-  explicit Listener(bool json) : json_(json) {}
+  explicit Listener(const ListenOptions& options) : options_(options) {}
 
-  void receive(MessageKind kind, std::span<const std::byte> bytes) {
+  void receive(const std::string& stream, MessageKind kind, std::span<const std::byte> bytes) {
     try {
       if (kind == MessageKind::trees) {
         const tree_list_t list = decode_tree_list(bytes);
-        figures_.add(list, SystemClock().mono_ns());
-        show(list, "");
+        figures_[stream].add(list, SystemClock().mono_ns());
+        ++lists_;
+        show(list, std::string());
       } else {
         show(decode_status(bytes));
       }
     } catch (const WireError& error) {
-      figures_.add_foreign();
-      const std::string text =
-          std::string(kind == MessageKind::trees ? "trees: " : "status: ") + error.what();
-      if (named_.insert(text).second) spdlog::warn("{}", text);
+      figures_[stream].add_foreign();
+      const std::string text = stream + " " + error.what();
+      if (named_.size() < kMostNamed && named_.insert(text).second) spdlog::warn("{}", text);
     }
     std::fflush(stdout);
   }
 
-  const StreamFigures& figures() const { return figures_; }
+  bool done() const { return options_.count > 0 && lists_ >= options_.count; }
+
+  void summarize() const {
+    for (const auto& [stream, figures] : figures_) {
+      std::printf("%s\n", options_.json ? figures.json(stream).c_str()
+                                        : (stream + ": " + figures.text()).c_str());
+    }
+  }
 
  private:
+  static constexpr std::size_t kMostNamed = 100;
+
   template <typename Message, typename... File>
   void show(const Message& message, const File&... file) {
-    if (!json_) return print(message);
+    if (!options_.json) return print(message);
     write_json_line(message, file..., line_);
     std::fputs(line_.c_str(), stdout);
   }
 
-  bool json_;
-  StreamFigures figures_;
+  const ListenOptions& options_;
+  std::map<std::string, StreamFigures> figures_;
+  std::int64_t lists_ = 0;
   std::set<std::string> named_;
   std::string line_;
 };
 
-void listen(const ListenOptions& options) {
-  const StopSignals stop;
-  Listener listener(options.json);
+void listen_lcm(const std::string& url, Listener& listener, const StopSignals& stop) {
   LcmSubscriber lcm(
-      parse_lcm_url(options.lcm_url, "--lcm", ""),
-      [&](MessageKind kind, std::span<const std::byte> bytes) { listener.receive(kind, bytes); });
+      parse_lcm_url(url, "--lcm", ""), [&](MessageKind kind, std::span<const std::byte> bytes) {
+        listener.receive(kind == MessageKind::trees ? kTreesChannel : kStatusChannel, kind, bytes);
+      });
   std::array<pollfd, 2> waits{pollfd{stop.fd(), POLLIN, 0}, pollfd{lcm.fd(), POLLIN, 0}};
-  while (options.count == 0 || listener.figures().lists() < options.count) {
+  while (!listener.done()) {
     if (::poll(waits.data(), waits.size(), -1) < 0) continue;
     if (waits[0].revents != 0) break;
     if (waits[1].revents != 0) lcm.handle();
   }
-  std::printf("%s\n",
-              (options.json ? listener.figures().json() : listener.figures().text()).c_str());
+}
+
+#ifdef BOLE_ZENOH
+void take(const ZenohMessage& message, Listener& listener) {
+  if (message.event != ZenohMessage::Event::sample) {
+    spdlog::info("{} {}", message.key,
+                 message.event == ZenohMessage::Event::alive ? "has come" : "has gone");
+  } else if (message.key.ends_with("/trees")) {
+    listener.receive(message.key, MessageKind::trees, message.payload);
+  } else if (message.key.ends_with("/status")) {
+    listener.receive(message.key, MessageKind::status, message.payload);
+  }
+}
+
+void listen_zenoh(const std::string& endpoint, Listener& listener, const StopSignals& stop) {
+  ZenohConfig config;
+  config.file = "--zenoh";
+  config.mode = "client";
+  config.connect = {endpoint};
+  ZenohSession session(config, std::nullopt, {"bole/**"});
+  pollfd stopped{stop.fd(), POLLIN, 0};
+  bool told = false;
+  while (!listener.done() && ::poll(&stopped, 1, 0) <= 0) {
+    for (const ZenohMessage& message : session.receive(std::chrono::milliseconds(200))) {
+      if (!listener.done()) take(message, listener);
+    }
+    const ZenohState state = session.state();
+    if (!state.connected() && !told && !state.error.empty()) {
+      spdlog::warn("{}: {}", endpoint, state.error);
+    }
+    told = !state.connected() && (told || !state.error.empty());
+  }
+}
+#else
+void listen_zenoh(const std::string& /*endpoint*/, Listener& /*listener*/,
+                  const StopSignals& /*stop*/) {
+  throw ConfigError("--zenoh", "", "is not in this build", "install cargo and build again");
+}
+#endif
+
+void listen(const ListenOptions& options) {
+  const StopSignals stop;
+  Listener listener(options);
+  if (options.zenoh_endpoint.empty()) {
+    listen_lcm(options.lcm_url, listener, stop);
+  } else {
+    listen_zenoh(options.zenoh_endpoint, listener, stop);
+  }
+  listener.summarize();
 }
 
 }  // namespace
@@ -123,10 +188,13 @@ void add_listen(CLI::App& app) {
   auto options = std::make_shared<ListenOptions>();
   CLI::App* command = app.add_subcommand("listen", "Shows the lists and states on a bus");
   command->add_option("--lcm", options->lcm_url, "LCM's address")->capture_default_str();
+  command->add_option("--zenoh", options->zenoh_endpoint,
+                      "Listen on Zenoh instead, at an endpoint as tcp/127.0.0.1:7447");
   command->add_option("--count", options->count, "Stop after so many lists; 0 = never")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
-  command->add_flag("--json", options->json, "A line of JSON a message, and one at the end");
+  command->add_flag("--json", options->json,
+                    "A line of JSON a message, and one a stream at the end");
   command->callback([options] { listen(*options); });
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <vector>
 
 #include "detect/trunk_finder.h"
@@ -29,8 +30,10 @@ class BoleDetector final : public Detector {
       const Tree tree = tree_of(trunk);
       if (tree.score >= kLeastScore && trees_.size() < trees_.capacity()) trees_.push_back(tree);
     }
-    std::stable_sort(trees_.begin(), trees_.end(),
-                     [](const Tree& a, const Tree& b) { return a.score > b.score; });
+    // Not std::stable_sort, which allocates.
+    std::sort(trees_.begin(), trees_.end(), [](const Tree& a, const Tree& b) {
+      return std::tie(b.score, a.bearing) < std::tie(a.score, b.bearing);
+    });
     return trees_;
   }
 

@@ -129,6 +129,9 @@ void VisionHealth::measure(const PanoramaView& panorama) {
 
   Statistics& s = statistics_;
   s.checksum = checksum;
+  double sum = 0;
+  for (int level = 0; level < 256; ++level) sum += static_cast<double>(level) * all[level];
+  s.mean = static_cast<float>(sum / total);
   s.median = static_cast<float>(quantile(all, 0.5));
   s.high = static_cast<float>(quantile(all, 0.95));
   s.saturated =

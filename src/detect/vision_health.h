@@ -35,6 +35,7 @@ class VisionHealth {
 
   /// What a reason is judged from; for tests and those who set the limits.
   struct Statistics {
+    float mean = 0;              ///< grey levels
     float median = 0, high = 0;  ///< grey levels: half, and 95 %, of the pixels lie below
     float saturated_ground = 0;  ///< share of the pixels below the horizon
     float saturated = 0;         ///< share of all pixels

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdio>
 
+#include <nlohmann/json.hpp>
+
 namespace bole {
 namespace {
 
@@ -38,18 +40,20 @@ std::string StreamFigures::text() const {
   return line.data();
 }
 
-std::string StreamFigures::json() const {
-  std::array<char, 512> line;
-  std::snprintf(
-      line.data(), line.size(),
-      R"({"summary":{"lists":%lld,"rate":%.2f,"lost":%lld,"restarts":%lld,"foreign":%lld,)"
-      R"("latency_p50_ms":%.3f,"latency_p99_ms":%.3f,"latency_max_ms":%.3f,)"
-      R"("delivery_p50_ms":%.3f,"delivery_p99_ms":%.3f}})",
-      static_cast<long long>(lists_), rate(), static_cast<long long>(lost_),
-      static_cast<long long>(restarts_), static_cast<long long>(foreign_),
-      ms(latency_.quantile(0.5)), ms(latency_.quantile(0.99)), ms(latency_.max()),
-      ms(delivery_.quantile(0.5)), ms(delivery_.quantile(0.99)));
-  return line.data();
+std::string StreamFigures::json(const std::string& stream) const {
+  return nlohmann::ordered_json{{"stream", stream},
+                                {"summary",
+                                 {{"lists", lists_},
+                                  {"rate", rate()},
+                                  {"lost", lost_},
+                                  {"restarts", restarts_},
+                                  {"foreign", foreign_},
+                                  {"latency_p50_ms", ms(latency_.quantile(0.5))},
+                                  {"latency_p99_ms", ms(latency_.quantile(0.99))},
+                                  {"latency_max_ms", ms(latency_.max())},
+                                  {"delivery_p50_ms", ms(delivery_.quantile(0.5))},
+                                  {"delivery_p99_ms", ms(delivery_.quantile(0.99))}}}}
+      .dump();
 }
 
 }  // namespace bole

@@ -22,8 +22,8 @@ class StreamFigures {
 
   /// "120 lists, 10.0/s, 0 lost, ..." for people.
   std::string text() const;
-  /// The same as one line of JSON with the key "summary".
-  std::string json() const;
+  /// The same as one line of JSON, {"stream": ..., "summary": {...}}.
+  std::string json(const std::string& stream) const;
 
  private:
   double rate() const;

@@ -23,10 +23,11 @@ float us(std::int64_t ns) { return static_cast<float>(ns) / 1000; }
 }  // namespace
 
 BusWorker::BusWorker(std::unique_ptr<Publisher> publisher, WhenFull when_full,
-                     std::function<void()> on_finished)
+                     std::function<void()> on_finished, Trace* trace)
     : publisher_(std::move(publisher)),
       when_full_(when_full),
-      on_finished_(std::move(on_finished)) {
+      on_finished_(std::move(on_finished)),
+      trace_(trace) {
   health_.name = publisher_->name();
   health_.healthy = 1;
   for (Message& message : outgoing_) message.bytes.reserve(kDatagramBytes);
@@ -39,11 +40,12 @@ BusWorker::~BusWorker() {
 }
 
 void BusWorker::offer(MessageKind kind, std::span<const std::byte> bytes, std::string_view file,
-                      std::int64_t processed_ns) {
+                      std::int64_t processed_ns, std::int64_t seq) {
   Message& message = outgoing_.at(slot_of(kind));
   message.bytes.assign(bytes.begin(), bytes.end());
   message.file.assign(file);
   message.processed_ns = processed_ns;
+  message.seq = seq;
   const WhenFull when_full = kind == MessageKind::trees ? when_full_ : WhenFull::overwrite;
   if (mailbox_.put(message, when_full, slot_of(kind)) && kind == MessageKind::trees) {
     const std::lock_guard lock(mutex_);
@@ -66,7 +68,11 @@ void BusWorker::run() {
 void BusWorker::publish(MessageKind kind, const Message& message) {
   try {
     publisher_->publish(kind, message.bytes, message.file);
-    record_success(kind, SystemClock().mono_ns() - message.processed_ns);
+    const std::int64_t done_ns = SystemClock().mono_ns();
+    record_success(kind, done_ns - message.processed_ns);
+    if (trace_ != nullptr && kind == MessageKind::trees) {
+      trace_->record("hand over", Trace::Lane::bus, message.seq, message.processed_ns, done_ns);
+    }
   } catch (const std::exception& error) {
     record_failure(kind, error.what());
   }

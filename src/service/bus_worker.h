@@ -15,6 +15,7 @@
 #include "bole/bus_t.hpp"
 #include "publish/publisher.h"
 #include "service/mailbox.h"
+#include "service/trace.h"
 
 namespace bole {
 
@@ -24,17 +25,17 @@ namespace bole {
 class BusWorker {
  public:
   /// `when_full` holds for lists; a status is always overwritten by the next. `on_finished` is
-  /// called from the bus's thread when it ends.
+  /// called from the bus's thread when it ends. `trace` may be null.
   BusWorker(std::unique_ptr<Publisher> publisher, WhenFull when_full,
-            std::function<void()> on_finished);
+            std::function<void()> on_finished, Trace* trace = nullptr);
   ~BusWorker();
   BusWorker(const BusWorker&) = delete;
   BusWorker& operator=(const BusWorker&) = delete;
 
   /// Leaves a message for the bus. `processed_ns`: CLOCK_MONOTONIC at the end of processing, from
-  /// which the hand-over is timed. Called by one thread a kind.
+  /// which the hand-over is timed; `seq`: of a list, for the trace. Called by one thread a kind.
   void offer(MessageKind kind, std::span<const std::byte> bytes, std::string_view file,
-             std::int64_t processed_ns);
+             std::int64_t processed_ns, std::int64_t seq = 0);
 
   /// No more messages: what is in the slots is published, then the thread ends.
   void close() { mailbox_.close(); }
@@ -49,6 +50,7 @@ class BusWorker {
     std::vector<std::byte> bytes;
     std::string file;
     std::int64_t processed_ns = 0;
+    std::int64_t seq = 0;
   };
 
   void run();
@@ -59,6 +61,7 @@ class BusWorker {
   std::unique_ptr<Publisher> publisher_;
   const WhenFull when_full_;
   std::function<void()> on_finished_;
+  Trace* const trace_;
   Mailbox<Message, 2> mailbox_;
   std::array<Message, 2> outgoing_;  // one a kind
 

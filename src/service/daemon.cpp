@@ -5,8 +5,10 @@
 
 #include <cerrno>
 #include <cstring>
+#include <optional>
 
 #include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
 
 #include "base/clock.h"
 #include "service/make_publishers.h"
@@ -31,6 +33,12 @@ void lock_memory() {
     spdlog::warn("service.lock_memory: {}; grant CAP_IPC_LOCK or raise LimitMEMLOCK",
                  std::strerror(errno));
   }
+}
+
+std::string calibration_json(const Camera& camera) {
+  const nlohmann::json calibration{{"camera.toml", camera.config_text},
+                                   {"calibration", camera.calibration_text}};
+  return calibration.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 double cpu_seconds() {
@@ -66,7 +74,8 @@ void run_daemon(const DaemonConfig& config, const std::string& version, int stop
   const Camera camera = load_camera(config.camera.file);
   const WarpTable table = open_table(config.camera, camera);
   SourceSetup setup = make_source(config, camera);
-  std::vector<std::unique_ptr<Publisher>> publishers = make_publishers(config, camera);
+  std::vector<std::unique_ptr<Publisher>> publishers =
+      make_publishers(config, calibration_json(camera));
 
   ProcessorOptions options;
   options.mode = config.detect.mode;
@@ -80,11 +89,13 @@ void run_daemon(const DaemonConfig& config, const std::string& version, int stop
                       *setup.clock);
   Telemetry telemetry(version, config.camera.name);
   if (config.service.lock_memory) lock_memory();
+  std::optional<Trace> trace;
+  if (!config.service.trace.empty()) trace.emplace(config.service.trace);
 
   const SystemClock clock;
   const std::int64_t start_ns = clock.mono_ns();
   Pipeline pipeline(*setup.source, *setup.clock, processor, telemetry, std::move(publishers),
-                    setup.lockstep, config.service.realtime_priority);
+                    setup.lockstep, config.service.realtime_priority, trace ? &*trace : nullptr);
   pipeline.run(stop_fd);
   if (setup.kind == ListSource::replay) {
     log_summary(telemetry.summary(), pipeline.bus_health(),

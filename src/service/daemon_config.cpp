@@ -134,6 +134,7 @@ void read_zenoh(TomlTable table, ZenohConfig& zenoh) {
 void read_service(TomlTable table, DaemonConfig::ServicePart& service) {
   service.realtime_priority = table.integer("realtime_priority", 0, {0, 99});
   service.lock_memory = table.boolean("lock_memory", false);
+  service.trace = table.text("trace", "");
   table.done();
 }
 

@@ -63,6 +63,7 @@ struct DaemonConfig {
   struct ServicePart {
     int realtime_priority = 0;  ///< SCHED_FIFO priority of capture and processing; 0: none
     bool lock_memory = false;
+    std::filesystem::path trace;  ///< where the time of frames goes, for Chrome; empty: no trace
   } service;
 
   std::string text;  ///< the file and the settings in one, as TOML

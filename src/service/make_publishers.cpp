@@ -4,8 +4,6 @@
 #include "publish/jsonl_publisher.h"
 #include "publish/lcm_publisher.h"
 #ifdef BOLE_ZENOH
-#include <nlohmann/json.hpp>
-
 #include "publish/zenoh_publisher.h"
 #endif
 
@@ -13,22 +11,20 @@ namespace bole {
 namespace {
 
 #ifdef BOLE_ZENOH
-std::unique_ptr<Publisher> make_zenoh(const DaemonConfig& config, const Camera& camera) {
-  const nlohmann::json calibration{{"camera.toml", camera.config_text},
-                                   {"calibration", camera.calibration_text}};
-  constexpr auto kReplace = nlohmann::json::error_handler_t::replace;
-  return std::make_unique<ZenohPublisher>(
-      config.zenoh, ZenohIdentity{config.publish.robot, config.camera.name},
-      ZenohAnswers{config.text, calibration.dump(-1, ' ', false, kReplace)});
+std::unique_ptr<Publisher> make_zenoh(const DaemonConfig& config, const std::string& calibration) {
+  return std::make_unique<ZenohPublisher>(config.zenoh,
+                                          ZenohIdentity{config.publish.robot, config.camera.name},
+                                          ZenohAnswers{config.text, calibration});
 }
 #else
-std::unique_ptr<Publisher> make_zenoh(const DaemonConfig& /*config*/, const Camera& /*camera*/) {
+std::unique_ptr<Publisher> make_zenoh(const DaemonConfig& /*config*/,
+                                      const std::string& /*calibration*/) {
   throw ConfigError("publish", "zenoh", "is not in this build", "install cargo and build again");
 }
 #endif
 
 std::unique_ptr<Publisher> make_publisher(const PublishTarget& target, const DaemonConfig& config,
-                                          const Camera& camera) {
+                                          const std::string& calibration) {
   switch (target.bus) {
     case PublishTarget::Bus::lcm:
       return std::make_unique<LcmPublisher>(config.lcm);
@@ -37,16 +33,16 @@ std::unique_ptr<Publisher> make_publisher(const PublishTarget& target, const Dae
     case PublishTarget::Bus::zenoh:
       break;
   }
-  return make_zenoh(config, camera);
+  return make_zenoh(config, calibration);
 }
 
 }  // namespace
 
 std::vector<std::unique_ptr<Publisher>> make_publishers(const DaemonConfig& config,
-                                                        const Camera& camera) {
+                                                        const std::string& calibration) {
   std::vector<std::unique_ptr<Publisher>> publishers;
   for (const PublishTarget& target : config.publish.to) {
-    publishers.push_back(make_publisher(target, config, camera));
+    publishers.push_back(make_publisher(target, config, calibration));
   }
   return publishers;
 }

@@ -1,17 +1,18 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "publish/publisher.h"
 #include "service/daemon_config.h"
-#include "warp/camera_files.h"
 
 namespace bole {
 
-/// The buses that the configuration names, in its order. Throws ConfigError for one that cannot be:
+/// The buses that the configuration names, in its order. `calibration`: what queries for it are
+/// answered with, JSON. Throws ConfigError for one that cannot be:
 /// a file that cannot be written, a bus that this build does not have.
 std::vector<std::unique_ptr<Publisher>> make_publishers(const DaemonConfig& config,
-                                                        const Camera& camera);
+                                                        const std::string& calibration);
 
 }  // namespace bole

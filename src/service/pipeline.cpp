@@ -31,17 +31,19 @@ std::int64_t now_ns() { return SystemClock().mono_ns(); }
 
 Pipeline::Pipeline(FrameSource& source, Clock& clock, Processor& processor, Telemetry& telemetry,
                    std::vector<std::unique_ptr<Publisher>> publishers, bool lockstep,
-                   int realtime_priority)
-    : clock_(clock),
+                   int realtime_priority, Trace* trace)
+    : source_(source),
+      clock_(clock),
       processor_(processor),
       telemetry_(telemetry),
       lockstep_(lockstep),
       when_full_(lockstep ? WhenFull::wait : WhenFull::overwrite),
       realtime_priority_(realtime_priority),
+      trace_(trace),
       supervisor_(source, clock, [this](const CameraEvent& event) { on_camera(event); }) {
   for (auto& publisher : publishers) {
-    buses_.push_back(std::make_unique<BusWorker>(std::move(publisher), when_full_,
-                                                 [this] { attention_.raise(); }));
+    buses_.push_back(std::make_unique<BusWorker>(
+        std::move(publisher), when_full_, [this] { attention_.raise(); }, trace));
   }
 }
 
@@ -60,6 +62,9 @@ Pipeline::~Pipeline() {
 void Pipeline::on_camera(const CameraEvent& event) {
   telemetry_.capture_event(event);
   service_manager_.status(std::string(name(event.state)) + ": " + event.reason);
+  if (event.state == CameraState::streaming) {
+    for (const std::string& line : source_.refused()) spdlog::warn("camera: {}", line);
+  }
   if (event.state == CameraState::no_camera || event.state == CameraState::stalled) {
     service_manager_.ready();
   }
@@ -104,14 +109,31 @@ void Pipeline::process() {
 
 void Pipeline::process(const Captured& captured) {
   const Processor::Result result = processor_.process(captured.frame);
-  const std::int64_t done_ns = now_ns();
+  const std::int64_t done_ns = result.steps_ns.back();
   for (const auto& bus : buses_) {
-    bus->offer(MessageKind::trees, result.bytes, captured.frame.file(), done_ns);
+    bus->offer(MessageKind::trees, result.bytes, captured.frame.file(), done_ns, result.seq);
   }
   // In lockstep the stamps are the replay's; what passes on the computer's own clock is told.
   const std::int64_t latency_ns =
       lockstep_ ? done_ns - captured.taken_ns : result.publish_mono_ns - result.captured.mono_ns;
+  telemetry_.vision(name(result.vision));
+  source_.metered(result.brightness);
   telemetry_.processed(latency_ns, processor_.trees_rejected());
+  if (trace_ != nullptr) trace(captured, result);
+}
+
+void Pipeline::trace(const Captured& captured, const Processor::Result& result) {
+  constexpr std::array kSteps = {"warp", "detect", "judge vision", "track", "encode"};
+  using Lane = Trace::Lane;
+  if (!lockstep_) {
+    trace_->record("driver", Lane::capture, result.seq, result.captured.mono_ns, captured.taken_ns);
+  }
+  trace_->record("wait for processing", Lane::capture, result.seq, captured.taken_ns,
+                 result.steps_ns.front());
+  for (std::size_t step = 0; step < kSteps.size(); ++step) {
+    trace_->record(kSteps.at(step), Lane::processing, result.seq, result.steps_ns.at(step),
+                   result.steps_ns.at(step + 1));
+  }
 }
 
 void Pipeline::publish_status(bool stopping) {

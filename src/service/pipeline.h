@@ -11,6 +11,7 @@
 #include "service/processor.h"
 #include "service/service_manager.h"
 #include "service/telemetry.h"
+#include "service/trace.h"
 
 namespace bole {
 
@@ -20,10 +21,10 @@ class Pipeline {
  public:
   /// All but `publishers` must outlive the pipeline. `lockstep`: between capture, processing and
   /// buses nothing is overwritten; the faster one waits. `realtime_priority`: of capture and
-  /// processing under SCHED_FIFO; 0: none.
+  /// processing under SCHED_FIFO; 0: none. `trace` may be null.
   Pipeline(FrameSource& source, Clock& clock, Processor& processor, Telemetry& telemetry,
-           std::vector<std::unique_ptr<Publisher>> publishers, bool lockstep,
-           int realtime_priority);
+           std::vector<std::unique_ptr<Publisher>> publishers, bool lockstep, int realtime_priority,
+           Trace* trace);
   ~Pipeline();
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
@@ -43,18 +44,21 @@ class Pipeline {
   void capture();
   void process();
   void process(const Captured& captured);
+  void trace(const Captured& captured, const Processor::Result& result);
   void on_camera(const CameraEvent& event);
   void publish_status(bool stopping);
   bool finished() const;
   // Until then, or until something needs attention; true when `stop_fd` (-1: none) is readable.
   bool wait(int stop_fd, std::int64_t until_ns);
 
+  FrameSource& source_;
   Clock& clock_;
   Processor& processor_;
   Telemetry& telemetry_;
   const bool lockstep_;
   const WhenFull when_full_;
   const int realtime_priority_;
+  Trace* const trace_;
   ServiceManager service_manager_;
   Wakeup attention_;  // the status has changed, or a thread has ended
   std::atomic<bool> status_due_{true};

@@ -17,6 +17,7 @@ Processor::Processor(const WarpTable& table, double camera_height, const Search&
     : warper_(table),
       detector_(
           make_detector(options.mode, {table.panorama(), table.seen(), camera_height, search})),
+      vision_(table.panorama(), table.seen()),
       options_(std::move(options)),
       clock_(clock) {
   list_.camera = options_.camera;
@@ -42,18 +43,33 @@ void Processor::track(std::int64_t captured_ns) {
 }
 
 Processor::Result Processor::process(const Frame& frame) {
-  const PanoramaView panorama = warper_.warp(frame.image());
-  choose(detector_->detect(panorama));
-  const FrameTime captured = frame_time(frame.stamp(), clock_);
-  if (options_.track) track(captured.mono_ns);
+  Result result;
+  std::size_t step = 0;
+  const auto stepped = [&] { result.steps_ns.at(step++) = SystemClock().mono_ns(); };
 
-  list_.utime = captured.utc_us;
-  list_.capture_mono_ns = captured.mono_ns;
-  list_.publish_mono_ns = options_.lockstep ? captured.mono_ns : clock_.mono_ns();
-  ++list_.seq;
+  stepped();
+  const PanoramaView panorama = warper_.warp(frame.image());
+  stepped();
+  choose(detector_->detect(panorama));
+  stepped();
+  result.vision = vision_.observe(panorama);
+  result.brightness = vision_.statistics().mean;
+  stepped();
+  result.captured = frame_time(frame.stamp(), clock_);
+  if (options_.track) track(result.captured.mono_ns);
+  stepped();
+
+  list_.utime = result.captured.utc_us;
+  list_.capture_mono_ns = result.captured.mono_ns;
+  list_.publish_mono_ns = options_.lockstep ? result.captured.mono_ns : clock_.mono_ns();
+  result.seq = ++list_.seq;
   list_.sensor_seq = frame.sensor_seq();
+  list_.degraded = result.vision != VisionHealth::Reason::none;
   list_.trees = trees_;
-  return {encoder_.encode(list_), captured, list_.publish_mono_ns};
+  result.publish_mono_ns = list_.publish_mono_ns;
+  result.bytes = encoder_.encode(list_);
+  stepped();
+  return result;
 }
 
 }  // namespace bole

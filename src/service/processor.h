@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -9,6 +10,7 @@
 
 #include "detect/detector.h"
 #include "detect/tracker.h"
+#include "detect/vision_health.h"
 #include "publish/encoder.h"
 #include "service/frame_time.h"
 #include "warp/warp_table.h"
@@ -39,6 +41,12 @@ class Processor {
     std::span<const std::byte> bytes;  ///< of the list, until the next call
     FrameTime captured;
     std::int64_t publish_mono_ns = 0;
+    VisionHealth::Reason vision = VisionHealth::Reason::none;  ///< why the camera cannot see well
+    float brightness = 0;  ///< mean of the panorama's seen pixels, 0 to 255
+    std::int64_t seq = 0;
+    /// CLOCK_MONOTONIC before the first step and after each: un-warped, detected, judged, tracked,
+    /// encoded.
+    std::array<std::int64_t, 6> steps_ns{};
   };
   /// Throws BadFrame when the frame cannot be used; it then takes no number in `seq`.
   Result process(const Frame& frame);
@@ -52,6 +60,7 @@ class Processor {
   Warper warper_;
   std::unique_ptr<Detector> detector_;
   Tracker tracker_;
+  VisionHealth vision_;
   TreeListEncoder encoder_;
   const ProcessorOptions options_;
   const Clock& clock_;

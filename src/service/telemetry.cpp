@@ -98,12 +98,15 @@ void Telemetry::processed(std::int64_t latency_ns, std::int64_t trees_rejected) 
   trees_rejected_ = trees_rejected;
 }
 
-void Telemetry::vision(bool degraded, const std::string& reason) {
+void Telemetry::vision(std::string_view reason) {
   const std::lock_guard lock(mutex_);
-  if (degraded != degraded_ && degraded) spdlog::warn("vision degraded: {}", reason);
-  if (degraded != degraded_ && !degraded) spdlog::info("vision restored");
-  degraded_ = degraded;
-  if (degraded_reason_ != reason) degraded_reason_ = reason;
+  if (degraded_reason_ == reason) return;
+  degraded_reason_ = reason;
+  if (reason.empty()) {
+    spdlog::info("the camera sees well again");
+  } else {
+    spdlog::warn("the camera cannot see well: {}", reason);
+  }
 }
 
 std::vector<counter_t> Telemetry::drops() const {
@@ -126,7 +129,7 @@ status_t Telemetry::status(std::int64_t now_ns, bool stopping) {
   status.source = source_;
   status.state = stopping ? status_t::STATE_STOPPING : wire_state(event_.state);
   if (event_.state != CameraState::streaming) status.state_reason = event_.reason;
-  status.degraded = degraded_ ? 1 : 0;
+  status.degraded = degraded_reason_.empty() ? 0 : 1;
   status.degraded_reason = degraded_reason_;
   status.frames = capture_.frames;
   status.lists = lists_;

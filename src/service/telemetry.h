@@ -35,7 +35,8 @@ class Telemetry {
   void unusable(std::string_view file, const std::string& reason);
   /// A list was encoded; `latency_ns` from capture to publish.
   void processed(std::int64_t latency_ns, std::int64_t trees_rejected);
-  void vision(bool degraded, const std::string& reason);
+  /// Why the camera cannot see well; empty when it can.
+  void vision(std::string_view reason);
 
   /// The status now, without the clocks and the buses. Rates are over the time since the last call.
   status_t status(std::int64_t now_ns, bool stopping);
@@ -63,7 +64,6 @@ class Telemetry {
   ProcessingDrops dropped_;
   std::int64_t trees_rejected_ = 0;
   std::int64_t lists_ = 0;
-  bool degraded_ = false;
   std::string degraded_reason_;
   std::string last_error_;
   std::set<std::string> told_;

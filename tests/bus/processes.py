@@ -24,6 +24,13 @@ def free_endpoint(protocol="tcp"):
     return f"{protocol}/127.0.0.1:{free_port()}"
 
 
+def listening(endpoint):
+    """Whether somebody takes connections there."""
+    host, port = endpoint.split("/")[1].split(":")
+    with socket.socket() as probe:
+        return probe.connect_ex((host, int(port))) == 0
+
+
 def eventually(condition, seconds=10):
     """Whether the condition comes true in time; what it returned last."""
     end = time.monotonic() + seconds

@@ -1,5 +1,6 @@
 """Exit codes, one-line errors, and what the daemon must not bring with it."""
 
+import json
 import pathlib
 import re
 import subprocess
@@ -54,3 +55,45 @@ def test_boled_uses_little_memory_and_ends_at_sigterm(programs, drive):
     assert daemon.returncode == 0
     assert "latency p50" in log
     assert int(re.search(r"RssAnon:\s+(\d+) kB", status)[1]) < 40_000
+
+
+@pytest.fixture
+def bolectl(programs):
+    def run(*arguments):
+        return subprocess.run([programs / "bolectl", *arguments], capture_output=True, text=True,
+                              timeout=60)
+
+    return run
+
+
+def test_lut_builds_a_table_that_fits_its_camera_only_and_whole(bolectl, drive, tmp_path):
+    table = tmp_path / "table"
+    camera = drive / "camera.toml"
+    assert bolectl("lut", "build", "--camera", camera, "--out", table).returncode == 0
+    shown = bolectl("lut", "info", "--camera", camera, table)
+    assert shown.returncode == 0 and "panorama" in shown.stdout
+    damaged = bytearray(table.read_bytes())
+    damaged[len(damaged) // 2] ^= 1
+    table.write_bytes(damaged)
+    refused = bolectl("lut", "info", "--camera", camera, table)
+    assert refused.returncode == 2
+    assert str(table) in refused.stderr and refused.stderr.count("\n") == 1
+
+
+def test_doctor_says_what_is_well_and_what_mends_the_rest(bolectl, drive):
+    common = ["doctor", "--camera", drive / "camera.toml", "--publish", "lcm"]
+    well = bolectl(*common, "--source", f"replay:{drive}")
+    assert well.returncode == 0 and "BAD" not in well.stdout
+    ill = bolectl(*common, "--source", "v4l2:/dev/v4l/by-id/nothing")
+    assert ill.returncode == 1
+    assert re.search("^BAD +source: .*nothing", ill.stdout, re.MULTILINE)
+
+
+def test_trace_shows_every_step_of_every_frame(boled, tmp_path):
+    trace = tmp_path / "trace.json"
+    assert boled("--pace", "fast", "--publish", "jsonl:/dev/null", "--trace",
+                 trace).returncode == 0
+    spans = [event for event in json.loads(trace.read_text()) if event["ph"] == "X"]
+    assert {span["name"] for span in spans} >= {"wait for processing", "warp", "detect", "track",
+                                                "encode", "hand over"}
+    assert all(span["dur"] >= 0 for span in spans)

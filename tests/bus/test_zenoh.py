@@ -1,21 +1,18 @@
 """One boled on both buses at once, each read by a Python package that shares no code with ours."""
 
-import socket
+import json
+import pathlib
 import subprocess
 import sys
 import time
-import pathlib
 
 import lcm
 import pytest
+import zenoh
+
+from processes import eventually, free_endpoint, listening
 
 CLIENT = pathlib.Path(__file__).with_name("zenoh_client.py")
-
-
-def free_endpoint():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
 
 
 def test_the_same_lists_byte_for_byte_on_both_buses(programs, drive, lcm_url):
@@ -28,7 +25,7 @@ def test_the_same_lists_byte_for_byte_on_both_buses(programs, drive, lcm_url):
                f"zenoh.listen=[\"{endpoint}\"]"]
     daemon = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     try:
-        time.sleep(1)
+        eventually(lambda: daemon.poll() is not None or listening(endpoint))
         if daemon.poll() is not None and "not in this build" in daemon.stderr.read():
             pytest.skip("built without Zenoh")
         client = subprocess.Popen(
@@ -45,3 +42,36 @@ def test_the_same_lists_byte_for_byte_on_both_buses(programs, drive, lcm_url):
         data = bytes.fromhex(payload)
         assert encoding == "application/octet-stream;bole.tree_list_t"
         assert received[data[32:40]] == data
+
+
+def test_listen_reads_zenoh_and_names_foreign_payloads(programs, tmp_path):
+    endpoint = free_endpoint()
+    fake = subprocess.Popen(
+        [programs / "bolectl", "publish-fake", "--publish", "zenoh", "--set", "zenoh.mode=router",
+         "--set", f"zenoh.listen=[\"{endpoint}\"]"], stderr=subprocess.PIPE, text=True)
+    try:
+        eventually(lambda: fake.poll() is not None or listening(endpoint))
+        if fake.poll() is not None and "not in this build" in fake.stderr.read():
+            pytest.skip("built without Zenoh")
+        listener = subprocess.Popen(
+            [programs / "bolectl", "listen", "--zenoh", endpoint, "--count", "20", "--json"],
+            stdout=open(tmp_path / "out", "w"), stderr=subprocess.PIPE, text=True)
+        config = zenoh.Config()
+        config.insert_json5("mode", '"client"')
+        config.insert_json5("connect/endpoints", f'["{endpoint}"]')
+        with zenoh.open(config) as session:
+            end = time.monotonic() + 20
+            while listener.poll() is None and time.monotonic() < end:
+                session.put("bole/a/b/trees", b"not a list")
+                time.sleep(0.1)
+        log = listener.communicate()[1]
+    finally:
+        listener.kill()
+        fake.terminate()
+        fake.wait(10)
+    summaries = {entry["stream"]: entry["summary"]
+                 for entry in map(json.loads, (tmp_path / "out").read_text().splitlines())
+                 if "summary" in entry}
+    (ours,) = [name for name in summaries if name.startswith("bole/robot/")]
+    assert (summaries[ours]["lists"], summaries[ours]["lost"]) == (20, 0)
+    assert summaries["bole/a/b/trees"]["foreign"] > 0 and "fingerprint" in log

@@ -37,5 +37,9 @@ TEST(StreamFigures, RateAndLatencyAreThoseOfTheLists) {
   EXPECT_THAT(figures.text(), testing::HasSubstr("publish to here p50 0.05"));
 }
 
+TEST(StreamFigures, JsonNamesTheStream) {
+  EXPECT_THAT(StreamFigures().json("a\"b"), testing::StartsWith(R"({"stream":"a\"b","summary":{)"));
+}
+
 }  // namespace
 }  // namespace bole

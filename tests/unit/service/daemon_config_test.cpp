@@ -27,6 +27,15 @@ TEST(DaemonConfig, WithoutAFileTheDefaultsHold) {
   EXPECT_EQ(config.publish.to[0].bus, PublishTarget::Bus::lcm);
 }
 
+TEST(DaemonConfig, TheFileThatShipsSaysTheDefaults) {
+  const auto shipped = std::filesystem::path(BOLE_SOURCE_DIR) / "systemd/boled.toml";
+  const DaemonConfig config = load_daemon_config(shipped, {});
+  EXPECT_EQ(config_crc(config, 1), config_crc(with({}), 1));
+  EXPECT_EQ(config.lcm.text(), with({}).lcm.text());
+  EXPECT_EQ(config.source.pace, with({}).source.pace);
+  EXPECT_EQ(config.camera.file, with({}).camera.file);
+}
+
 TEST(DaemonConfig, SettingsAreTomlAndABareWordIsAString) {
   const DaemonConfig config =
       with({"publish.min_score=0.25", "detect.mode=paper", "camera.name=\"front\"",

@@ -30,6 +30,15 @@ TEST(Telemetry, APlannerCanTellNoCameraFromStreaming) {
   EXPECT_EQ(status.source, "cam 640x480");
 }
 
+TEST(Telemetry, APlannerCanTellCannotSeeFromNoTrees) {
+  Telemetry telemetry("1.0", "front");
+  telemetry.vision("dark");
+  EXPECT_EQ(telemetry.status(0, false).degraded, 1);
+  EXPECT_EQ(telemetry.status(0, false).degraded_reason, "dark");
+  telemetry.vision("");
+  EXPECT_EQ(telemetry.status(0, false).degraded, 0);
+}
+
 TEST(Telemetry, DropsAreToldByCause) {
   Telemetry telemetry("1.0", "front");
   CaptureCounts counts;

@@ -1,0 +1,26 @@
+"""Trees from Zenoh: pip install eclipse-zenoh;
+PYTHONPATH=/usr/share/bole/python python3 subscribe_zenoh.py tcp/127.0.0.1:7447"""
+
+import sys
+
+import zenoh
+
+from bole import status_t, tree_list_t
+
+config = zenoh.Config()
+config.insert_json5("mode", '"client"')
+config.insert_json5("connect/endpoints", f'["{sys.argv[1]}"]')
+with zenoh.open(config) as session:
+    subscriber = session.declare_subscriber("bole/*/*/*")
+    for sample in subscriber:
+        key, data = str(sample.key_expr), sample.payload.to_bytes()
+        try:
+            message = (status_t if key.endswith("/status") else tree_list_t).decode(data)
+        except Exception as error:  # a foreign or newer type: name it and go on
+            print(key, "is not of this version:", repr(error))
+            continue
+        if key.endswith("/status"):
+            print(key, "state", message.state, message.state_reason, message.degraded_reason)
+            continue
+        for tree in message.trees:
+            print(f"#{tree.id}: {tree.bearing:+.3f} rad, {tree.range:.2f} +- {tree.range_sigma:.2f} m")

@@ -1,0 +1,106 @@
+#include "service/doctor.h"
+
+#include <unistd.h>
+
+#include <functional>
+
+#include "capture/frame_source.h"
+#include "capture/v4l2/device.h"
+#include "publish/lcm_url.h"
+#include "service/make_source.h"
+#include "warp/table_cache.h"
+
+namespace bole {
+namespace {
+
+// `check` returns what is good to know and throws what is wrong.
+Finding find(const std::string& name, const std::function<std::string()>& check) {
+  try {
+    return {name, true, check()};
+  } catch (const std::exception& error) {
+    return {name, false, error.what()};
+  }
+}
+
+std::string table_detail(const DaemonConfig::CameraPart& part, const Camera& camera) {
+  if (!part.table.empty()) {
+    WarpTable::load(part.table, camera.digest);
+    return part.table.string() + " fits the camera";
+  }
+  const auto folder =
+      part.cache_directory.empty() ? default_cache_directory() : part.cache_directory;
+  auto nearest = folder;
+  while (!nearest.empty() && !std::filesystem::exists(nearest)) nearest = nearest.parent_path();
+  if (nearest.empty() || ::access(nearest.c_str(), W_OK) != 0) {
+    throw std::runtime_error("cannot be kept in \"" + folder.string() +
+                             "\", each start builds it anew; set camera.cache_directory");
+  }
+  return "kept in " + folder.string();
+}
+
+std::string device_detail(const std::string& name) {
+  const std::filesystem::path node = find_v4l2_device(name);
+  if (::access(node.c_str(), R_OK | W_OK) != 0) {
+    throw std::runtime_error(node.string() +
+                             " may not be opened; add the user to its group: adduser USER video");
+  }
+  const V4l2Device device(node);
+  device.capture_type();
+  const v4l2_capability capability = device.capability();
+  return node.string() + ", " + reinterpret_cast<const char*>(capability.card);
+}
+
+std::string source_detail(const DaemonConfig& config, const Camera& camera) {
+  const SourceSetup setup = make_source(config, camera);
+  if (setup.kind != ListSource::v4l2) return setup.source->description();
+  const std::string name = config.source.uri.substr(config.source.uri.find(':') + 1);
+  try {
+    return device_detail(name);
+  } catch (const CaptureError& error) {
+    throw std::runtime_error(name + " " + error.what() +
+                             "; plug it in, or choose from bolectl cameras");
+  }
+}
+
+std::string lcm_detail(const LcmUrl& url) {
+  const std::string problem = missing_route(url);
+  if (!problem.empty()) throw std::runtime_error(problem);
+  return url.text() + (url.ttl == 0 ? ", stays on this machine; ttl=1 reaches the network" : "");
+}
+
+std::string zenoh_detail(const ZenohConfig& config) {
+#ifdef BOLE_ZENOH
+  if (config.listen.empty() && config.connect.empty() && config.config_file.empty()) {
+    return "listens on tcp/127.0.0.1:7447, this machine only";
+  }
+  return "endpoints are set";
+#else
+  static_cast<void>(config);
+  throw std::runtime_error("is not in this build; install cargo and build again");
+#endif
+}
+
+}  // namespace
+
+std::vector<Finding> examine(const DaemonConfig& config) {
+  std::vector<Finding> findings;
+  std::optional<Camera> camera;
+  findings.push_back(find("camera files", [&] {
+    camera = load_camera(config.camera.file);
+    return config.camera.file.string();
+  }));
+  if (camera) {
+    findings.push_back(find("warp table", [&] { return table_detail(config.camera, *camera); }));
+    findings.push_back(find("source", [&] { return source_detail(config, *camera); }));
+  }
+  for (const PublishTarget& target : config.publish.to) {
+    if (target.bus == PublishTarget::Bus::lcm) {
+      findings.push_back(find("lcm", [&] { return lcm_detail(config.lcm); }));
+    } else if (target.bus == PublishTarget::Bus::zenoh) {
+      findings.push_back(find("zenoh", [&] { return zenoh_detail(config.zenoh); }));
+    }
+  }
+  return findings;
+}
+
+}  // namespace bole

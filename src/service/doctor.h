@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "service/daemon_config.h"
+
+namespace bole {
+
+/// What became of one check; where it is not good, `detail` says what is wrong and what mends it.
+struct Finding {
+  std::string check;
+  bool good = false;
+  std::string detail;
+};
+
+/// Checks what a daemon of this configuration needs: the camera's files, its table, the source, the
+/// buses. Touches nothing and streams nothing.
+std::vector<Finding> examine(const DaemonConfig& config);
+
+}  // namespace bole
