@@ -3,19 +3,11 @@
 #include <opencv2/imgproc.hpp>
 
 #include "bench/bench_scene.h"
-#include "detect/detector.h"
 #include "detect/paper_templates.h"
 #include "warp/warper.h"
 
 namespace bole::bench {
 namespace {
-
-DetectorSetup setup_of(const Scene& made) {
-  return {.panorama = made.table.panorama(),
-          .seen = made.table.seen(),
-          .height = made.camera.config.mount.height,
-          .search = made.camera.config.search};
-}
 
 // A panorama as OpenCV is given it: with the columns that lie within a template's reach behind the
 // seam on both sides, so that its borders need not wrap.
@@ -30,13 +22,13 @@ OpenCvScene opencv_scene(ImageSize size) {
   const std::vector<std::byte> bytes = made.frame(PixelFormat::yuyv);
   Warper warper(made.table);
   const PanoramaView view = warper.warp(*view_packed(PixelFormat::yuyv, size, bytes));
-  const DetectorSetup setup = setup_of(made);
   OpenCvScene result;
-  result.templates = paper_templates(setup.panorama, setup.height, setup.search);
+  result.templates =
+      paper_templates(*view.geometry, made.camera.config.mount.height, made.camera.config.search);
   for (const PaperTemplate& t : result.templates) {
     result.margin = std::max(result.margin, t.reach());
   }
-  const cv::Mat1b green(setup.panorama.rows, setup.panorama.width,
+  const cv::Mat1b green(view.geometry->rows, view.geometry->width,
                         const_cast<std::uint8_t*>(view.pixels), view.stride);
   cv::Mat1b wide;
   cv::copyMakeBorder(green, wide, 0, 0, result.margin, result.margin, cv::BORDER_WRAP);
@@ -82,44 +74,15 @@ void paper_separable_opencv(benchmark::State& state, ImageSize size) {
   });
 }
 
-// The detector alone, on a panorama that is there.
-void detect(benchmark::State& state, ImageSize size, DetectorMode mode) {
-  const Scene& made = scene(size);
-  const std::vector<std::byte> bytes = made.frame(PixelFormat::yuyv);
-  Warper warper(made.table);
-  const PanoramaView panorama = warper.warp(*view_packed(PixelFormat::yuyv, size, bytes));
-  const std::unique_ptr<Detector> detector = make_detector(mode, setup_of(made));
-  for (auto _ : state) {
-    one_frame([&] { benchmark::DoNotOptimize(detector->detect(panorama).data()); });
-  }
-}
-
-void frame_to_trees(benchmark::State& state, ImageSize size, DetectorMode mode,
-                    PixelFormat format) {
-  const Scene& made = scene(size);
-  const std::vector<std::byte> bytes = made.frame(format);
-  const ImageView image = *view_packed(format, size, bytes);
-  Warper warper(made.table);
-  const std::unique_ptr<Detector> detector = make_detector(mode, setup_of(made));
-  for (auto _ : state) {
-    one_frame([&] { benchmark::DoNotOptimize(detector->detect(warper.warp(image)).data()); });
-  }
-}
-
 const bool registered = [] {
   for (const ImageSize size : kSizes) {
-    const auto add = [size](const std::string& subject, auto function, auto... arguments) {
-      return benchmark::RegisterBenchmark(name_of(subject, size).c_str(), function, size,
-                                          arguments...)
-          ->Unit(benchmark::kMicrosecond);
+    const auto add = [size](const std::string& subject, auto function) {
+      benchmark::RegisterBenchmark(name_of(subject, size).c_str(), function, size)
+          ->Unit(benchmark::kMicrosecond)
+          ->Iterations(1);
     };
-    add("paper_literal_opencv", paper_literal_opencv)->Iterations(1);
-    add("paper_separable_opencv", paper_separable_opencv)->Iterations(1);
-    add("paper", detect, DetectorMode::paper);
-    for (const PixelFormat format : {PixelFormat::yuyv, PixelFormat::grey, PixelFormat::mjpeg}) {
-      add("frame_to_trees/paper/" + std::string(name(format)), frame_to_trees, DetectorMode::paper,
-          format);
-    }
+    add("paper_literal_opencv", paper_literal_opencv);
+    add("paper_separable_opencv", paper_separable_opencv);
   }
   return true;
 }();
