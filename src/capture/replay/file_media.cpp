@@ -7,6 +7,7 @@
 
 #include "base/errors.h"
 #include "capture/replay/image_file.h"
+#include "capture/replay/jpeg.h"
 #include "capture/replay/media.h"
 #include "capture/replay/names.h"
 #include "capture/replay/timestamps.h"
@@ -24,8 +25,7 @@ struct FrameFile {
 };
 
 std::optional<PixelFormat> raw_format(const fs::path& path) {
-  const std::optional<PixelFormat> format = pixel_format_from_name(lower_ending(path));
-  return format == PixelFormat::mjpeg ? std::nullopt : format;  // a stream of many: a video
+  return pixel_format_from_name(lower_ending(path));
 }
 
 FrameFile frame_file(const fs::path& path) {
@@ -142,7 +142,9 @@ class FileMedia : public ReplayMedia {
     if (size_.width <= 0) throw UnreadableFrame("needs a calibration that gives its size");
     const std::size_t needed = packed_frame_bytes(format, size_);
     read_frame_file(path, slot.bytes);
-    if (slot.bytes.size() != needed || !view_packed(format, size_, slot.bytes)) {
+    if (format == PixelFormat::mjpeg) {
+      if (!is_jpeg(slot.bytes)) throw UnreadableFrame("does not begin as a JPEG does");
+    } else if (slot.bytes.size() != needed || !view_packed(format, size_, slot.bytes)) {
       throw UnreadableFrame("has " + std::to_string(slot.bytes.size()) + " bytes; " +
                             std::to_string(needed) + " make a frame of the calibration's size");
     }

@@ -45,8 +45,10 @@ struct ReplayOptions {
 /// Files in place of a camera.
 ///
 /// A folder's frames are its image files (png, jpg, jpeg, bmp, pgm, ppm, tif, tiff, webp) and raw
-/// frames (an ending for each PixelFormat's name: yuyv, nv12, grey, rggb ...; tightly packed), in
-/// the byte order of their names; other files and folders in it do not count. Stamps come from the
+/// frames (an ending for each PixelFormat's name: yuyv, nv12, grey, rggb ...; tightly packed; an
+/// mjpeg file in a folder is one frame as such a camera sends it, its luma read alone, while a jpg
+/// is a picture in colour), in the byte order of their names; other files and folders in it do not
+/// count. Stamps come from the
 /// folder's `timestamps.csv` (lines `file,utime_us`), else frame k is at k / rate_hz from 0; a
 /// video's stamps follow from its own rate. The sensor's count counts files, bad ones too.
 ///

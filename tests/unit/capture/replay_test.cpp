@@ -170,6 +170,23 @@ TEST(Replay, DeliversEachRawFormatByteForByte) {
   }
 }
 
+TEST(Replay, TakesAnMjpegFileOfAFolderAsOneFrameOfSuchACamera) {
+  const TemporaryFolder folder;
+  const std::string frame = "\xff\xd8\xff\xe0 and so on";
+  folder.write("0.mjpeg", frame);
+  folder.write("1.mjpeg", "no JPEG");
+  const Replayed seen = replay(options_for(folder.path()));
+  ASSERT_THAT(files_of(seen), ElementsAre("0.mjpeg"));
+  EXPECT_THAT(seen.bad, ElementsAre(HasSubstr("1.mjpeg: does not begin as a JPEG does")));
+
+  ReplayClock clock;
+  const auto source = make_replay_source(options_for(folder.path()), clock);
+  source->open();
+  const Grab grab = source->grab(seconds(1));
+  EXPECT_EQ(grab.frame.image().format, PixelFormat::mjpeg);
+  EXPECT_EQ(bytes_of(grab.frame), frame);
+}
+
 TEST(Replay, StampsAtTenHertzOrFromTimestampsCsv) {
   const TemporaryFolder folder = folder_of(3);
   EXPECT_THAT(utimes_of(replay(options_for(folder.path()))), ElementsAre(0, 100'000, 200'000));

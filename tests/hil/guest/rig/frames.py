@@ -61,8 +61,7 @@ def rendered(fourcc, size, count=None):
 
 def rendered_folder(fourcc, size):
     """The pictures of a drive through a wood (host/frames) in this format, ready to be replayed."""
-    # A file of several JPEGs is a video to replay; single ones are pictures.
-    ending = "jpg" if fourcc == "MJPG" else PROJECT_NAMES[fourcc]
+    ending = PROJECT_NAMES[fourcc]
     folder = environment.build("hil/frames", f"{size[0]}x{size[1]}", ending)
     if not folder.exists():
         raise Skip(f"{folder} is not rendered")
