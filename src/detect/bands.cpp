@@ -48,9 +48,19 @@ void Bands::compute(const PanoramaView& panorama) {
       sums[i++] = total;
       total += log_[row_sum_[x]];
     };
-    for (int x = -margin_; x < 0; ++x) add(wraps_ ? ((x % width_) + width_) % width_ : 0);
-    for (int x = 0; x < width_; ++x) add(x);
-    for (int x = width_; x < width_ + margin_; ++x) add(wraps_ ? x % width_ : width_ - 1);
+    if (wraps_) {
+      int x = (width_ - margin_ % width_) % width_;
+      for (int left = width_ + 2 * margin_; left > 0;) {
+        const int run = std::min(left, width_ - x);
+        for (int end = x + run; x < end; ++x) add(x);
+        left -= run;
+        x = 0;
+      }
+    } else {
+      for (int x = 0; x < margin_; ++x) add(0);
+      for (int x = 0; x < width_; ++x) add(x);
+      for (int x = 0; x < margin_; ++x) add(width_ - 1);
+    }
     sums[i] = total;
   }
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "detect/dense_layer.h"
+
 namespace bole {
 namespace {
 
@@ -14,12 +16,15 @@ static_assert(weights::kInputs == TrunkFeatures::kCount, "train the network anew
 
 Judgement judge(const TrunkFeatures::Values& features) {
   std::array<float, weights::kHidden> hidden = weights::kHiddenBias;
+  // What was never seen in training is taken for the most extreme that was.
+  std::array<float, weights::kInputs> inputs;
   for (int i = 0; i < weights::kInputs; ++i) {
-    // What was never seen in training is taken for the most extreme that was.
-    const float value = std::clamp((features[i] - weights::kMean[i]) * weights::kScale[i],
-                                   -weights::kLimit, weights::kLimit);
-    for (int j = 0; j < weights::kHidden; ++j) hidden[j] += value * weights::kFirst[i][j];
+    const float value = (features[i] - weights::kMean[i]) * weights::kScale[i];
+    inputs[i] = std::min(weights::kLimit, std::max(-weights::kLimit, value));
   }
+  static_assert(weights::kHidden % 48 == 0);
+  add_dense(inputs.data(), weights::kInputs, &weights::kFirst[0][0], weights::kHidden,
+            hidden.data());
   std::array<float, weights::kOutputs> out = weights::kOutputBias;
   for (int j = 0; j < weights::kHidden; ++j) {
     const float active = hidden[j] > 0 ? hidden[j] : 0.05F * hidden[j];

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "detect/dense_layer.h"
 #include "detect/edge_kernels.h"
 #include "detect/template_kernels.h"
 #include "simulate/noise.h"
@@ -56,6 +57,18 @@ TEST(TemplateKernels, SumColumnsAsThePlainLoops) {
   for (int k = 0; k < 4; ++k)
     for (int i = 0; i < kCount; ++i)
       ASSERT_EQ(results[k][i], results[4 + k][i]) << k << " at " << i;
+}
+
+TEST(DenseLayer, AddsAsThePlainLoops) {
+  simulate::Random random(4);
+  std::vector<float> in(205), weights(205 * 96), fast(96, 0.5F), plain(96, 0.5F);
+  for (float& value : in) value = random.normal();
+  for (float& weight : weights) weight = random.normal();
+  for (const int units : {48, 96}) {
+    add_dense(in.data(), 205, weights.data(), units, fast.data());
+    add_dense_plain(in.data(), 205, weights.data(), units, plain.data());
+    EXPECT_EQ(fast, plain);
+  }
 }
 
 TEST(EdgeKernels, SumEdgesAsThePlainLoops) {
