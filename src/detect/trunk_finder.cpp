@@ -6,8 +6,8 @@
 namespace bole {
 namespace {
 
-constexpr float kWorthASecondLook = -4.0F;  // logit
-constexpr float kWorthOtherFeet = -6.0F;    // logit
+constexpr float kWorthASecondLook = -3.0F;  // logit
+constexpr float kWorthOtherFeet = -4.0F;    // logit
 constexpr float kWorthAnswering = -3.5F;    // logit
 
 // The farther the search goes, the more trunks there are.

@@ -93,23 +93,29 @@ EdgeFitter::Placed EdgeFitter::place(const Bands& bands, Line& line, float foot,
                                      int flank, int sign) const {
   constexpr int kReach = 3;
   std::array<float, EdgeWindow::kMostBands> rows, places, weights;
+  const float scale = 1 / static_cast<float>(flank);
+  const int least = nearest(0.15F * kContrast * static_cast<float>(flank));
   int n = 0;
   for (int band = extent.first; band < extent.last; ++band) {
     const float row = row_of(band) - foot;
     const int middle = nearest(line.column + line.slope * row);
-    std::array<float, 2 * kReach + 1> r;
+    // In whole numbers, `flank` times the response.
+    std::array<int, 2 * kReach + 1> r;
+    const std::int32_t* sum = bands.sum(band) + middle - kReach;
     int peak = 0;
-    for (int o = -kReach; o <= kReach; ++o) {
-      r[o + kReach] = response(bands.sum(band), middle + o, flank) * static_cast<float>(sign);
-      if (band < horizon_band_) r[o + kReach] = std::abs(r[o + kReach]);
-      if (r[o + kReach] > r[peak]) peak = o + kReach;
+    for (int o = 0; o <= 2 * kReach; ++o) {
+      const int bend = sign * (sum[o + flank] - 2 * sum[o] + sum[o - flank]);
+      r[o] = band < horizon_band_ ? std::abs(bend) : bend;
+      if (r[o] > r[peak]) peak = o;
     }
-    if (r[peak] < 0.15F * kContrast || peak == 0 || peak == 2 * kReach) continue;
-    const float bend = r[peak - 1] - 2 * r[peak] + r[peak + 1];
-    const float shift = bend < -1e-3F ? 0.5F * (r[peak - 1] - r[peak + 1]) / bend : 0;
+    if (r[peak] < least || peak == 0 || peak == 2 * kReach) continue;
+    const int bend = r[peak - 1] - 2 * r[peak] + r[peak + 1];
+    const float shift =
+        bend < 0 ? 0.5F * static_cast<float>(r[peak - 1] - r[peak + 1]) / static_cast<float>(bend)
+                 : 0;
     rows[n] = row;
     places[n] = static_cast<float>(middle + peak - kReach) + std::clamp(shift, -0.5F, 0.5F);
-    weights[n] = std::min(r[peak], kStrongContrast);
+    weights[n] = std::min(static_cast<float>(r[peak]) * scale, kStrongContrast);
     ++n;
   }
   if (n < 4) return {3, 1};
