@@ -4,19 +4,24 @@ import json
 import os
 import pathlib
 import subprocess
+import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PROGRAMS = ROOT / "build/release/firmware_app"
 BOLECTL = PROGRAMS / "bolectl"
 SHARED = pathlib.Path(os.environ.get("BOLE_SHARED_DIR", ROOT.parent / "shared")) / "data"
+NEAR_TREES = "range_m = [1, 8]\ndiameter_m = [0.2, 0.8]"
+ALL_TREES = "range_m = [1, 40]\ndiameter_m = [0.1, 1.2]"
 # Training draws its cameras and woods from seeds of 1,000,003 on; nothing was ever fitted to these.
 HELD_OUT_CAMERAS = [900001, 900002, 900003]
 
 
 def run(*command):
-    """The command's standard output."""
-    return subprocess.run([str(part) for part in command], check=True, stdout=subprocess.PIPE,
-                          text=True).stdout
+    """The command's standard output; ends the script with what the command says when it fails."""
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(done.args)}\n{done.stderr}")
+    return done.stdout
 
 
 def build(*targets):
@@ -25,7 +30,7 @@ def build(*targets):
 
 
 def evaluate(camera, folder, images=None):
-    """The figures of the product mode; `images`: folder of the frames where it is not the truth's."""
+    """The product mode's figures; `images`: folder of the frames where it is not the truth's."""
     return json.loads(run(BOLECTL, "eval", "--json", "--camera", camera, "--truth",
                           folder / "truth.json", images or folder))["bole"]
 
@@ -60,7 +65,7 @@ def held_out(folder, seed, preset, frames):
 
 
 def shared_camera(data, folder, search):
-    """camera.toml for a folder of ../shared/data, its mount from truth.json, written to `folder`."""
+    """camera.toml, in `folder`, for a folder of ../shared/data; the mount as in truth.json."""
     truth = json.loads((data / "truth.json").read_text())
     sides = truth["mount"]
     angles = truth if "height_m" in truth else sides

@@ -22,7 +22,7 @@ constexpr float kEvenSpread = 0.12F;  // of the sector's grey
 constexpr float kEvenLevels = 6;      // grey levels
 constexpr float kCoveredShare = 0.25F;
 constexpr float kSharpness = 0.15F;  // fine over coarse structure
-constexpr float kSmearedShare = 0.6F;
+constexpr float kSmearedShare = 0.25F;
 
 // The grey level below which `share` of the pixels lie.
 int quantile(const std::array<std::uint32_t, 256>& histogram, double share) {

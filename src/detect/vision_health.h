@@ -25,7 +25,7 @@ class VisionHealth {
   ///   dark     hardly any grey level left to tell things apart
   ///   glare    saturated, or veiled to one bright grey, over much of the panorama
   ///   covered  a quarter of the bearings or more shows one even grey from top to bottom
-  ///   smeared  over most of the panorama there are contrasts, but only blurred ones
+  ///   smeared  a quarter of the bearings or more shows contrasts, but only blurred ones
   ///   frozen   four frames running are equal to the last bit. A sensor's noise makes that
   ///            impossible for a camera that works; a folder that replays one picture over and over
   ///            is rightly called frozen, too
