@@ -78,6 +78,8 @@ class ZenohSession {
                         const std::vector<std::string>& subscribe = {});
   ZenohSession(ZenohSession&&) noexcept;
   ZenohSession& operator=(ZenohSession&&) noexcept;
+  ZenohSession(const ZenohSession&) = delete;
+  ZenohSession& operator=(const ZenohSession&) = delete;
   /// Takes leave of the others; up to half a second when a link is stuck.
   ~ZenohSession();
 
