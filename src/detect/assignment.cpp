@@ -5,6 +5,14 @@
 
 namespace bole {
 
+void Assignment::reserve(int rows, int columns) {
+  const auto all = static_cast<std::size_t>(columns) + rows + 1;
+  for (std::vector<double>* prices : {&row_price_, &column_price_, &distance_})
+    prices->reserve(all);
+  for (std::vector<int>* indices : {&row_of_, &previous_, &answer_}) indices->reserve(all);
+  done_.reserve(all);
+}
+
 double Assignment::cost_of(int row, int column) const {
   if (column < columns_) return cost_[static_cast<std::size_t>(row) * columns_ + column];
   return column - columns_ == row ? unassigned_ : kForbidden;

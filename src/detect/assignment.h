@@ -13,6 +13,9 @@ class Assignment {
   /// No pair of that cost or more is ever made.
   static constexpr double kForbidden = 1e6;
 
+  /// Makes room, so that problems of up to that size allocate nothing.
+  void reserve(int rows, int columns);
+
   /// `cost`: rows x columns, row by row, each from 0 to kForbidden. Answers the column of each row,
   /// -1 for a row that is better left alone; leaving one alone costs `unassigned`. Valid until the
   /// next call.

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kForgetAfter = 3.0;  // seconds a tree may stay unseen and keep its id
 constexpr std::size_t kMostTracks = 256;
+constexpr std::size_t kMostTrees = 256;   // of a frame, that room is made for
 constexpr double kGate = 16.0;            // squared misfit, in variances
 constexpr double kDiameterSpread = 0.35;  // of log diameter between two sightings of one tree
 // What disturbs one frame (a slope, a root, the robot's pitch) disturbs the next one alike: each
@@ -46,8 +47,10 @@ double farthest_step(double range) { return std::max(0.9, 0.12 * range); }
 }  // namespace
 
 Tracker::Tracker() {
-  tracks_.reserve(kMostTracks + 64);
-  sightings_.reserve(kMostTracks);
+  tracks_.reserve(kMostTracks + kMostTrees);
+  sightings_.reserve(kMostTrees);
+  costs_.reserve(kMostTrees * (kMostTracks + kMostTrees));
+  assignment_.reserve(kMostTrees, kMostTracks + kMostTrees);
 }
 
 void Tracker::reset() {
@@ -203,7 +206,7 @@ void Tracker::update(std::span<Tree> trees, double elapsed,
   for (std::size_t i = 0; i < trees.size(); ++i) {
     if (pairs[i] >= 0) {
       fuse(tracks_[pairs[i]], trees[i]);
-    } else if (tracks_.size() < kMostTracks + 64) {
+    } else if (tracks_.size() < kMostTracks + kMostTrees) {
       tracks_.push_back(begin(trees[i]));
     }
   }

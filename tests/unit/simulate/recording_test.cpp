@@ -9,6 +9,7 @@
 
 #include "base/errors.h"
 #include "base/files.h"
+#include "support/temporary_folder.h"
 #include "test_camera.h"
 
 namespace bole::simulate {
@@ -18,15 +19,13 @@ namespace fs = std::filesystem;
 
 class Recording : public testing::Test {
  protected:
-  Recording() : folder_(fs::path(testing::TempDir()) / "recording") {
+  Recording() : folder_(temporary_.path()) {
     // The camera's own files, as load_camera would have read them.
     camera_ = test_camera(160, "height_m = 1\n");
     camera_.mask.clear();
     camera_.file = folder_ / "camera" / "camera.toml";
     write(folder_ / "camera" / "calib_results.txt", camera_.calibration_text);
   }
-  ~Recording() override { fs::remove_all(folder_); }
-
   static void write(const fs::path& path, const std::string& text) {
     write_file_atomically(path, std::as_bytes(std::span(text)));
   }
@@ -43,6 +42,7 @@ class Recording : public testing::Test {
     record(folder_ / name, camera_, options, [this](int done) { progress_.push_back(done); });
   }
 
+  test::TemporaryFolder temporary_;
   fs::path folder_;
   Camera camera_;
   std::vector<int> progress_;
