@@ -30,13 +30,13 @@ TEST(LoadCamera, ReadsTheExample) {
 }
 
 TEST(LoadCamera, PathsAreRelativeToTheFilesOwnFolder) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const auto file = write_small_camera(folder, kAllSeen);
   EXPECT_EQ(load_camera(file).mask, kAllSeen);
 }
 
 TEST(LoadCamera, TheDigestChangesWithEachOfTheThreeFiles) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const auto file = write_small_camera(folder, kAllSeen);
   const std::uint32_t before = load_camera(file).digest;
   EXPECT_EQ(load_camera(file).digest, before);
@@ -53,7 +53,7 @@ TEST(LoadCamera, TheDigestChangesWithEachOfTheThreeFiles) {
 }
 
 TEST(LoadCamera, TheDigestTellsCamerasWithoutAMaskApart) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const auto file = write_small_camera(folder);
   const std::uint32_t before = load_camera(file).digest;
   std::ofstream(file, std::ios::app) << "# a note\n";
@@ -61,7 +61,7 @@ TEST(LoadCamera, TheDigestTellsCamerasWithoutAMaskApart) {
 }
 
 TEST(LoadCamera, NamesTheFileThatIsMissing) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   EXPECT_THAT(problem_of(folder.path() / "no.toml"), HasSubstr("no.toml"));
   const auto file = write_small_camera(folder, kAllSeen);
   std::filesystem::remove(folder.path() / "mask.png");
@@ -71,7 +71,7 @@ TEST(LoadCamera, NamesTheFileThatIsMissing) {
 }
 
 TEST(LoadCamera, RefusesAMaskOfAnotherSizeOrZeroEverywhere) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const auto file = write_small_camera(folder, kAllSeen);
   write_png(folder.path() / "mask.png", {240, 320}, kAllSeen);
   EXPECT_THAT(problem_of(file), HasSubstr("mask.png: is 240 x 320"));
@@ -80,7 +80,7 @@ TEST(LoadCamera, RefusesAMaskOfAnotherSizeOrZeroEverywhere) {
 }
 
 TEST(LoadCamera, RefusesAMaskThatIsNoPngOrCutShort) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const auto file = write_small_camera(folder, kAllSeen);
   const auto mask = folder.path() / "mask.png";
   std::filesystem::resize_file(mask, std::filesystem::file_size(mask) / 2);

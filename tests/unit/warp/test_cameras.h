@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "support/temp_folder.h"
+#include "support/temporary_folder.h"
 #include "warp/camera_files.h"
 
 namespace bole {
@@ -42,7 +42,7 @@ inline void write_png(const std::filesystem::path& path, ImageSize size,
 }
 
 /// The small camera, written to `folder`; with a mask when one is given.
-inline std::filesystem::path write_small_camera(const TempFolder& folder,
+inline std::filesystem::path write_small_camera(const test::TemporaryFolder& folder,
                                                 const std::vector<std::uint8_t>& mask = {}) {
   folder.write("calib.txt", kSmallOcam);
   std::string toml(kSmallCameraToml);
@@ -52,7 +52,7 @@ inline std::filesystem::path write_small_camera(const TempFolder& folder,
 }
 
 /// A camera that looks ahead, 160 x 120, 60 degrees wide.
-inline std::filesystem::path write_pinhole(const TempFolder& folder) {
+inline std::filesystem::path write_pinhole(const test::TemporaryFolder& folder) {
   return folder.write("camera.toml", R"(
 [camera]
 model = "pinhole"

@@ -29,7 +29,7 @@ struct Errors {
 };
 
 TEST(WarpPrecision, IsNoWorseThanOpenCvRemapAgainstDoublePrecision) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const Camera camera = load_camera(write_small_camera(folder));
   const WarpTable table = build_warp_table(camera);
   const PanoramaGeometry& panorama = table.panorama();

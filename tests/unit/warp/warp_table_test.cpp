@@ -36,7 +36,7 @@ std::vector<std::byte> copy_of(std::span<const std::byte> bytes) {
 }
 
 TEST(WarpTable, SeenPixelsPointToWhereTheCameraModelSeesThem) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const Camera camera = load_camera(write_small_camera(folder));
   const WarpTable table = build_warp_table(camera);
   ASSERT_TRUE(table.panorama().wraps());
@@ -55,7 +55,7 @@ TEST(WarpTable, SeenPixelsPointToWhereTheCameraModelSeesThem) {
 }
 
 TEST(WarpTable, APixelIsSeenWhenItsFourSourcePixelsAreInTheImageAndUnmasked) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   std::vector<std::uint8_t> mask(320 * 240, 1);
   for (int i = 0; i < 320 * 240; i += 37) mask[static_cast<std::size_t>(i)] = 0;  // ragged
   const Camera camera = load_camera(write_small_camera(folder, mask));
@@ -76,7 +76,7 @@ TEST(WarpTable, APixelIsSeenWhenItsFourSourcePixelsAreInTheImageAndUnmasked) {
 }
 
 TEST(WarpTable, AnUnseenPixelTakesTheNearestSeenOneOfItsColumnTheUpperOnTies) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   std::vector<std::uint8_t> mask(320 * 240, 1);
   for (std::size_t i = 0; i < mask.size(); i += 7) mask[i] = 0;
   const WarpTable table = build_warp_table(load_camera(write_small_camera(folder, mask)));
@@ -103,7 +103,7 @@ TEST(WarpTable, AnUnseenPixelTakesTheNearestSeenOneOfItsColumnTheUpperOnTies) {
 }
 
 TEST(WarpTable, SeenRowsSpanTheSeenPixelsOfEachColumn) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   std::vector<std::uint8_t> mask(320 * 240, 1);
   std::fill_n(mask.begin(), 320 * 100, std::uint8_t{0});
   const WarpTable table = build_warp_table(load_camera(write_small_camera(folder, mask)));
@@ -122,7 +122,7 @@ TEST(WarpTable, SeenRowsSpanTheSeenPixelsOfEachColumn) {
 }
 
 TEST(WarpTable, ACameraThatLooksAheadKeepsTheArcItSees) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const WarpTable table = build_warp_table(load_camera(write_pinhole(folder)));
   EXPECT_NEAR(table.panorama().width, 120, 2);  // 60 of 360 degrees of 720 columns
   EXPECT_FALSE(table.panorama().wraps());
@@ -132,7 +132,7 @@ TEST(WarpTable, ACameraThatLooksAheadKeepsTheArcItSees) {
 }
 
 TEST(WarpTable, TheHorizonRowOfAPhotographIsThePanoramasHorizon) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const WarpTable table = build_warp_table(load_camera(write_pinhole(folder)));
   const int row = static_cast<int>(std::lround(table.panorama().horizon_row()));
   const double off = row - table.panorama().horizon_row();
@@ -142,7 +142,7 @@ TEST(WarpTable, TheHorizonRowOfAPhotographIsThePanoramasHorizon) {
 }
 
 TEST(WarpTable, StoredAndMappedIsTheSame) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const Camera camera = load_camera(write_small_camera(folder));
   const WarpTable built = build_warp_table(camera);
   built.store(folder.path() / "new" / "table");
@@ -153,7 +153,7 @@ TEST(WarpTable, StoredAndMappedIsTheSame) {
 }
 
 TEST(WarpTable, OneDamagedBitAnywhereIsRefused) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const Camera camera = load_camera(write_small_camera(folder));
   std::vector<std::byte> bytes = copy_of(build_warp_table(camera).bytes());
   for (std::size_t at = 0; at < bytes.size(); at += at < 64 ? 1 : 4099) {
@@ -167,7 +167,7 @@ TEST(WarpTable, OneDamagedBitAnywhereIsRefused) {
 }
 
 TEST(WarpTable, TruncatedForeignOrOtherVersionsAreRefusedInOneLine) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const Camera camera = load_camera(write_small_camera(folder));
   const std::vector<std::byte> good = copy_of(build_warp_table(camera).bytes());
   EXPECT_THAT(problem_of(good, camera.digest + 1), HasSubstr("another camera"));
@@ -183,7 +183,7 @@ TEST(WarpTable, TruncatedForeignOrOtherVersionsAreRefusedInOneLine) {
 }
 
 TEST(WarpTable, AMaskThatLeavesNothingOfThePanoramaIsRefused) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   std::vector<std::uint8_t> mask(320 * 240, 0);
   mask[0] = 255;
   const Camera camera = load_camera(write_small_camera(folder, mask));
@@ -191,7 +191,7 @@ TEST(WarpTable, AMaskThatLeavesNothingOfThePanoramaIsRefused) {
 }
 
 TEST(TableCache, BuildsOnceThenMapsAndBuildsAnewWhatIsDamaged) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const Camera camera = load_camera(write_small_camera(folder));
   const auto cache = folder.path() / "cache";
   EXPECT_TRUE(load_or_build_warp_table(camera, cache).built);
@@ -206,7 +206,7 @@ TEST(TableCache, BuildsOnceThenMapsAndBuildsAnewWhatIsDamaged) {
 }
 
 TEST(TableCache, WithoutAPlaceToKeepItTheTableIsStillThere) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const Camera camera = load_camera(write_small_camera(folder));
   const auto no_folder = folder.write("file", "in the way");
   const CachedTable table = load_or_build_warp_table(camera, no_folder);

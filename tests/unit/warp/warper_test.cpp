@@ -42,7 +42,7 @@ Panorama plain_warp(const WarpTable& table, const SampledImage& image) {
 }
 
 // A camera that sees its whole image, to the last pixel of each border.
-std::filesystem::path write_wide_pinhole(const TempFolder& folder) {
+std::filesystem::path write_wide_pinhole(const test::TemporaryFolder& folder) {
   return folder.write("wide.toml", R"(
 [camera]
 model = "pinhole"
@@ -59,7 +59,7 @@ range_min_m = 2
 }
 
 TEST(Warper, KernelsEqualThePlainOneInEveryFormatAndTouchNothingOutside) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   for (const auto& file : {write_small_camera(folder), write_wide_pinhole(folder)}) {
     const WarpTable table = build_warp_table(load_camera(file));
     Warper warper(table);
@@ -80,7 +80,7 @@ TEST(Warper, KernelsEqualThePlainOneInEveryFormatAndTouchNothingOutside) {
 }
 
 TEST(Warper, ReadsRowsThatAreFartherApartThanTheyAreLong) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const WarpTable table = build_warp_table(load_camera(write_small_camera(folder)));
   Warper warper(table);
   std::vector<std::byte> packed(320 * 240 * 2);
@@ -98,7 +98,7 @@ TEST(Warper, ReadsRowsThatAreFartherApartThanTheyAreLong) {
 }
 
 TEST(Warper, StripsJoinToTheWholePanorama) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const WarpTable table = build_warp_table(load_camera(write_small_camera(folder)));
   Warper warper(table);
   std::vector<std::byte> bytes(320 * 240);
@@ -117,7 +117,7 @@ TEST(Warper, StripsJoinToTheWholePanorama) {
 
 // Sources far from their tile's, as ragged masks make them, take another way through the kernels.
 TEST(Warper, PixelsFilledFromFarAwayHaveTheirSourcesValue) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   folder.write("big.txt", "3 -600 0 6e-4\n2 1000 800\n1250 1250\n1 0 0\n2500 2500\n");
   std::vector<std::uint8_t> mask(2500 * 2500, 0);
   std::minstd_rand random(3);
@@ -156,7 +156,7 @@ TEST(Warper, PixelsFilledFromFarAwayHaveTheirSourcesValue) {
 
 // Its stride does not fit the kernels' 16 bits, its columns in steps do not either.
 TEST(Warper, AVeryWideImageIsWarpedToo) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const auto file = folder.write("wide.toml", R"(
 [camera]
 model = "pinhole"
@@ -185,7 +185,7 @@ range_min_m = 200
 }
 
 TEST(Warper, GreenOfRgbIsGreenWhateverRedAndBlue) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const WarpTable table = build_warp_table(load_camera(write_small_camera(folder)));
   Warper warper(table);
   std::vector<std::byte> grey(320 * 240), rgb(320 * 240 * 3);
@@ -198,7 +198,7 @@ TEST(Warper, GreenOfRgbIsGreenWhateverRedAndBlue) {
 }
 
 TEST(Warper, BayerGreenIsKeptAndCompletedFromItsNeighbours) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const WarpTable table = build_warp_table(load_camera(write_small_camera(folder)));
   Warper warper(table);
   // Red and blue are 255; green grows evenly to the right and down.
@@ -225,7 +225,7 @@ TEST(Warper, BayerGreenIsKeptAndCompletedFromItsNeighbours) {
 }
 
 TEST(Warper, RefusesFramesThatDoNotFit) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const WarpTable table = build_warp_table(load_camera(write_small_camera(folder)));
   Warper warper(table);
   std::vector<std::byte> bytes(640 * 480 * 2);
