@@ -32,7 +32,8 @@ set(headers "${BOLE_CARGO_TARGET_DIR}/cxxbridge")
 file(GLOB bridge_sources CONFIGURE_DEPENDS "${bridge}/src/*.rs" "${bridge}/Cargo.*")
 add_custom_command(
   OUTPUT "${library}"
-  COMMAND "${CARGO}" build --quiet --release --locked
+  COMMAND "${CMAKE_COMMAND}" -E env "BOLE_SOURCE_DIR=${CMAKE_SOURCE_DIR}"
+          "${CARGO}" build --quiet --release --locked
           --manifest-path "${bridge}/Cargo.toml" --target-dir "${BOLE_CARGO_TARGET_DIR}"
   COMMAND "${CMAKE_COMMAND}" -E copy
           "${BOLE_CARGO_TARGET_DIR}/release/libzenoh_bridge.a" "${library}"
