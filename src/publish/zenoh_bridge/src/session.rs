@@ -337,6 +337,8 @@ fn declare_queryable(session: &zenoh::Session, topic: &Arc<Topic>) -> Result<(),
 }
 
 fn close(open: Open) {
+    // First, since a session that is closed with publishers is never freed.
+    drop(open.publishers);
     let _ = open.session.close().timeout(CLOSE_TIMEOUT).wait();
 }
 
