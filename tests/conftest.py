@@ -95,3 +95,14 @@ def boled(programs, drive):
         return subprocess.run(command, capture_output=True, text=True, timeout=60)
 
     return run
+
+
+@pytest.fixture
+def bolectl(programs):
+    """Runs bolectl to its end; the finished process."""
+
+    def run(*arguments):
+        return subprocess.run([programs / "bolectl", *arguments], capture_output=True, text=True,
+                              timeout=60)
+
+    return run

@@ -2,7 +2,9 @@
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 
+#include "base/errors.h"
 #include "commands/commands.h"
 #include "evaluate/annotate.h"
 #include "evaluate/detections.h"
@@ -31,17 +33,20 @@ void detect_in(ImageDetector& detector, const fs::path& image, const std::string
 
 void detect(const Options& options) {
   ImageDetector detector(options.camera, *detector_mode_from_name(options.mode));
-  int bad = 0;
+  std::vector<std::pair<std::string, std::string>> bad;  // images and what is wrong with them
   for (const fs::path image : options.images) {
     try {
       detect_in(detector, image, options.annotate);
     } catch (const std::runtime_error& error) {
       std::puts(error_line(image.filename().string(), error.what()).c_str());
-      ++bad;
+      bad.emplace_back(image, error.what());
     }
     std::fflush(stdout);
   }
-  if (bad > 0) throw std::runtime_error(std::to_string(bad) + " bad images");
+  if (bad.empty()) return;
+  const std::string others =
+      bad.size() == 1 ? "" : "so are " + std::to_string(bad.size() - 1) + " other images";
+  throw ConfigError(bad.front().first, "", bad.front().second, others);
 }
 
 }  // namespace

@@ -39,12 +39,14 @@ bool metric(const TruthFrame& frame, const json& file) {
 }  // namespace
 
 Truth parse_truth(const std::string& text, const std::string& file) {
+  std::string key;
   try {
     const json root = json::parse(text);
     Truth truth;
     const json mount = root.value("mount", json::object());
     truth.height = root.value("height_m", mount.value("height_m", 1.0));
     for (const json& value : root.at("frames")) {
+      key = "frames[" + std::to_string(truth.frames.size()) + "]";
       TruthFrame& frame = truth.frames.emplace_back();
       frame.file = value.at("file");
       frame.utime = value.value("utime", std::int64_t{0});
@@ -55,7 +57,9 @@ Truth parse_truth(const std::string& text, const std::string& file) {
     }
     return truth;
   } catch (const json::exception& error) {
-    throw ConfigError(file, "", error.what(), "a truth.json as bolectl sim writes it");
+    const std::string text_of_error = error.what();  // "[json.exception...] what is wrong"
+    throw ConfigError(file, key, text_of_error.substr(text_of_error.find(' ') + 1),
+                      "give a truth.json as bolectl sim writes it");
   }
 }
 

@@ -57,15 +57,6 @@ def test_boled_uses_little_memory_and_ends_at_sigterm(programs, drive):
     assert int(re.search(r"RssAnon:\s+(\d+) kB", status)[1]) < 40_000
 
 
-@pytest.fixture
-def bolectl(programs):
-    def run(*arguments):
-        return subprocess.run([programs / "bolectl", *arguments], capture_output=True, text=True,
-                              timeout=60)
-
-    return run
-
-
 def test_lut_builds_a_table_that_fits_its_camera_only_and_whole(bolectl, drive, tmp_path):
     table = tmp_path / "table"
     camera = drive / "camera.toml"

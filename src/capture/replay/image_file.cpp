@@ -29,6 +29,12 @@ bool is_known_image(std::span<const std::byte> file) {
          head.starts_with(std::string_view("MM\0*", 4));
 }
 
+// libpng would report it too, but on standard error.
+bool is_cut_png(std::span<const std::byte> file) {
+  const std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
+  return text.starts_with("\x89PNG") && text.rfind("IEND") == std::string_view::npos;
+}
+
 }  // namespace
 
 void check_frame_size(ImageSize size, ImageSize wanted) {
@@ -59,6 +65,7 @@ void ImageReader::read(const std::filesystem::path& path, FrameSlot& slot) {
     return;
   }
   if (!is_known_image(file_)) throw UnreadableFrame("is no image");
+  if (is_cut_png(file_)) throw UnreadableFrame("is a PNG image that is cut short");
   std::string problem;
   try {
     problem = replay_codecs().decode_image(file_, slot);

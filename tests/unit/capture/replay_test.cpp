@@ -452,7 +452,8 @@ TEST(ReplayImages, OfAnotherSizeOrDamagedAreBad) {
   EXPECT_THAT(files_of(seen), ElementsAre("0.png"));
   EXPECT_THAT(seen.bad, ElementsAre(HasSubstr("1.png: has 2 x 4 pixels"),
                                     HasSubstr("2.jpg: has 2 x 4 pixels"),
-                                    HasSubstr("3.jpg: is a damaged JPEG"), HasSubstr("4.png: ")));
+                                    HasSubstr("3.jpg: is a damaged JPEG"),
+                                    HasSubstr("4.png: is a PNG image that is cut short")));
 }
 
 TEST(ReplayImages, ThatClaimToBeHugeAreRefusedUndecoded) {
@@ -467,8 +468,9 @@ TEST(ReplayImages, ThatClaimToBeHugeAreRefusedUndecoded) {
     append(crc32(std::as_bytes(std::span(body))));
     return all;
   };
-  const std::string file =
-      "\x89PNG\r\n\x1a\n" + chunk({"IHDR\0\0\xff\xff\0\0\xff\xff\x08\0\0\0\0", 17}) + chunk("IDAT");
+  const std::string file = "\x89PNG\r\n\x1a\n" +
+                           chunk({"IHDR\0\0\xff\xff\0\0\xff\xff\x08\0\0\0\0", 17}) + chunk("IDAT") +
+                           chunk("IEND");
   folder.write("0.png", file);
   EXPECT_THAT(refusal(options_for(folder.path())), HasSubstr("MAX_IMAGE_PIXELS"));
 }
