@@ -1,8 +1,9 @@
 #include "commands/commands.h"
 #include "program.h"
 
-int main(int argc, char** argv) {
-  CLI::App app{"The operator's tool of bole, which finds tree trunks around a robot", "bolectl"};
+namespace {
+
+void add_commands(CLI::App& app) {
   app.require_subcommand(1);
   bole::add_cameras(app);
   bole::add_detect(app);
@@ -13,5 +14,12 @@ int main(int argc, char** argv) {
   bole::add_lut(app);
   bole::add_publish_fake(app);
   bole::add_sim(app);
-  return bole::run_program(app, argc, argv);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return bole::run_program("bolectl",
+                           "The operator's tool of bole, which finds tree trunks around a robot",
+                           add_commands, argc, argv);
 }

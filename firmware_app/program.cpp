@@ -40,27 +40,30 @@ void set_up_log() {
   spdlog::set_default_logger(std::move(logger));
 }
 
-int fail(const CLI::App& app, const char* problem, int code) {
-  std::fprintf(stderr, "%s: %s\n", app.get_name().c_str(), problem);
+int fail(const char* name, const char* problem, int code) {
+  std::fprintf(stderr, "%s: %s\n", name, problem);
   return code;
 }
 
 }  // namespace
 
-int run_program(CLI::App& app, int argc, char** argv) {
-  app.set_version_flag("--version", app.get_name() + " " + BOLE_VERSION);
+int run_program(const char* name, const char* description, void (*set_up)(CLI::App&), int argc,
+                char** argv) {
+  CLI::App app{description, name};
   try {
     set_up_log();
+    app.set_version_flag("--version", std::string(name) + " " + BOLE_VERSION);
+    set_up(app);
     app.parse(argc, argv);
     return EXIT_SUCCESS;
   } catch (const CLI::Success& shown) {  // --help, --version
     return app.exit(shown);
   } catch (const CLI::ParseError& error) {
-    return fail(app, (std::string(error.what()) + "; see --help").c_str(), 2);
+    return fail(name, (std::string(error.what()) + "; see --help").c_str(), 2);
   } catch (const ConfigError& error) {
-    return fail(app, error.what(), 2);
+    return fail(name, error.what(), 2);
   } catch (const std::exception& error) {
-    return fail(app, error.what(), 1);
+    return fail(name, error.what(), 1);
   }
 }
 

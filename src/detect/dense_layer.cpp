@@ -14,13 +14,13 @@ namespace hn = hwy::HWY_NAMESPACE;
 void AddDense(const float* HWY_RESTRICT in, int count, const float* HWY_RESTRICT weights, int units,
               float* HWY_RESTRICT sums) {
   const hn::CappedTag<float, 16> d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  for (int j = 0; j < units; j += 3 * lanes) {
+  const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
+  for (std::ptrdiff_t j = 0; j < units; j += 3 * lanes) {
     auto a = hn::LoadU(d, sums + j), b = hn::LoadU(d, sums + j + lanes);
     auto c = hn::LoadU(d, sums + j + 2 * lanes);
-    for (int i = 0; i < count; ++i) {
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
       const auto value = hn::Set(d, in[i]);
-      const float* row = weights + static_cast<std::ptrdiff_t>(i) * units + j;
+      const float* row = weights + i * units + j;
       a = hn::Add(a, hn::Mul(value, hn::LoadU(d, row)));
       b = hn::Add(b, hn::Mul(value, hn::LoadU(d, row + lanes)));
       c = hn::Add(c, hn::Mul(value, hn::LoadU(d, row + 2 * lanes)));

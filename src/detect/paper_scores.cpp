@@ -43,17 +43,17 @@ constexpr int kBlock = 4;
 void FilterRow(const float* HWY_RESTRICT in, int width, const float* HWY_RESTRICT profile,
                int reach, float* HWY_RESTRICT out) {
   const hn::ScalableTag<float> d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  for (int j = 0; j < width; j += kBlock * lanes) {
+  const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
+  for (std::ptrdiff_t j = 0; j < width; j += kBlock * lanes) {
     auto a = hn::Zero(d), b = hn::Zero(d), c = hn::Zero(d), e = hn::Zero(d);
-    for (int first = 0; first < lanes && first <= reach; ++first) {
+    for (std::ptrdiff_t first = 0; first < lanes && first <= reach; ++first) {
       const float* left = in + j - first;
       const float* right = in + j + first;
       auto left_a = hn::LoadU(d, left), left_b = hn::LoadU(d, left + lanes);
       auto left_c = hn::LoadU(d, left + 2 * lanes), left_e = hn::LoadU(d, left + 3 * lanes);
       auto right_a = hn::LoadU(d, right), right_b = hn::LoadU(d, right + lanes);
       auto right_c = hn::LoadU(d, right + 2 * lanes), right_e = hn::LoadU(d, right + 3 * lanes);
-      for (int x = first;;) {
+      for (std::ptrdiff_t x = first;;) {
         const auto weight = hn::Set(d, profile[x]);
         a = hn::MulAdd(weight, hn::Add(left_a, right_a), a);
         b = hn::MulAdd(weight, hn::Add(left_b, right_b), b);
@@ -84,7 +84,7 @@ HWY_EXPORT(WeightRows);
 HWY_EXPORT(FilterRow);
 
 // A block of the widest vectors there are, 256 bytes each.
-constexpr int kSpare = 4 * 256 / sizeof(float);
+constexpr std::size_t kSpare = 4 * 256 / sizeof(float);
 
 // P2(row) of rows above the image, as a multiple of the first row.
 std::uint32_t first_rows_above(int row) {

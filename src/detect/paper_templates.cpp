@@ -20,7 +20,10 @@ std::vector<float> bar_of_width(double s) {
 
 std::vector<double> depths_of(const Bounds& range) {
   std::vector<double> depths;
-  for (double depth = std::ceil(range.low); depth <= range.high; ++depth) depths.push_back(depth);
+  const int last = static_cast<int>(std::floor(range.high));
+  for (int depth = static_cast<int>(std::ceil(range.low)); depth <= last; ++depth) {
+    depths.push_back(depth);
+  }
   if (depths.empty()) depths.push_back(range.low);
   return depths;
 }

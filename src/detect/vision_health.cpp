@@ -147,10 +147,11 @@ void VisionHealth::measure(const PanoramaView& panorama) {
     const auto middle = static_cast<float>(quantile(histograms_[i], 0.5));
     const auto high = static_cast<float>(quantile(histograms_[i], 0.95));
     spreads[seen_sectors++] = high - low;
-    if (high - low < std::max(kEvenLevels, kEvenSpread * middle))
+    if (high - low < std::max(kEvenLevels, kEvenSpread * middle)) {
       ++even;
-    else if (sharpness(panorama, seen_, sectors_[i].first, sectors_[i].last) > kSharpness)
+    } else if (sharpness(panorama, seen_, sectors_[i].first, sectors_[i].last) > kSharpness) {
       ++sharp;
+    }
   }
   const auto share = [](int part, int of) {
     return of > 0 ? static_cast<float>(part) / static_cast<float>(of) : 0.0F;

@@ -40,7 +40,7 @@ class Map {
 
 void draw_grid(Map& map, Labels& labels, double reach) {
   const cv::Point2d centre = map.place(0, 0);
-  for (double bearing = 0; bearing < 360; bearing += 30) {
+  for (int bearing = 0; bearing < 360; bearing += 30) {
     draw_line(map.canvas(), {centre, map.place(radians(bearing), reach)}, kCircle);
   }
   for (const double distance : marked_distances(0, reach)) {

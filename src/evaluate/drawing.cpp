@@ -55,6 +55,7 @@ void Labels::add(const std::string& text, cv::Point2d place, const Colour& colou
 void draw_line(cv::Mat3b& picture, const std::vector<cv::Point2d>& points, const Colour& colour,
                int thickness, bool outlined) {
   std::vector<cv::Point> fine;
+  fine.reserve(points.size());
   for (const cv::Point2d& p : points) {
     fine.emplace_back(cvRound(p.x * (1 << kShift)), cvRound(p.y * (1 << kShift)));
   }

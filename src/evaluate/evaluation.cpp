@@ -66,9 +66,9 @@ Evaluation evaluate(const Truth& truth, const Detections& detections, const Dete
   e.min_score = min_score;
   e.figures = measure(truth, detections, min_score);
   e.ap_of_all = measure(truth, detections, 0).ap;
-  const std::vector<Event> events = events_of(truth, detections, 0);
-  e.precision = precision_curve(events, e.figures.trees);
-  e.reliability = measure_reliability(events);
+  const std::vector<Outcome> outcomes = outcomes_of(truth, detections, 0);
+  e.precision = precision_curve(outcomes, e.figures.trees);
+  e.reliability = measure_reliability(outcomes);
   e.range_trust = measure_range_trust(truth, detections, min_score);
   e.pixels = measure_pixel_rates(truth, detections, panorama, min_score);
   if (have_ids(truth)) e.tracking = measure_tracking(truth, tracked, min_score);

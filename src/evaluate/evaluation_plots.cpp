@@ -77,7 +77,7 @@ std::vector<RangedError> errors_of(const Truth& truth, const Detections& detecti
 
 double quantile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * (static_cast<double>(values.size()) - 1) + 0.5)];
+  return values[std::lround(share * (static_cast<double>(values.size()) - 1))];
 }
 
 // For each metre of range a bar from the lower to the upper quartile and a line at the median.
@@ -166,6 +166,7 @@ void write_plots(const std::filesystem::path& folder, const Truth& truth, double
   write_picture(folder / "precision_recall.png", plot_precision(evaluations).picture());
   write_picture(folder / "reliability.png", plot_reliability(evaluations).picture());
   std::vector<std::pair<const PlottedEvaluation*, std::vector<RangedError>>> errors;
+  errors.reserve(evaluations.size());
   for (const PlottedEvaluation& plotted : evaluations) {
     errors.emplace_back(&plotted, errors_of(truth, *plotted.detections, min_score));
   }

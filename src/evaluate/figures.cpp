@@ -55,14 +55,14 @@ Errors visit_matches(const Truth& truth, const Detections& detections, double mi
   return errors;
 }
 
-void append_event(const Match& match, std::vector<Event>& events) {
+void append_outcome(const Match& match, std::vector<Outcome>& outcomes) {
   if (match.verdict == Match::Verdict::ignored) return;
-  events.push_back({as_printed(match.tree->score), match.verdict == Match::Verdict::hit});
+  outcomes.push_back({as_printed(match.tree->score), match.verdict == Match::Verdict::hit});
 }
 
-void sort_by_score(std::vector<Event>& events) {
-  std::stable_sort(events.begin(), events.end(),
-                   [](const Event& a, const Event& b) { return a.score > b.score; });
+void sort_by_score(std::vector<Outcome>& outcomes) {
+  std::stable_sort(outcomes.begin(), outcomes.end(),
+                   [](const Outcome& a, const Outcome& b) { return a.score > b.score; });
 }
 
 double average_precision(const std::vector<RecallPrecision>& curve) {
@@ -83,19 +83,20 @@ std::optional<double> median(std::vector<double> values) {
   return n % 2 == 1 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
 }
 
-std::vector<Event> events_of(const Truth& truth, const Detections& detections, double min_score) {
-  std::vector<Event> events;
+std::vector<Outcome> outcomes_of(const Truth& truth, const Detections& detections,
+                                 double min_score) {
+  std::vector<Outcome> outcomes;
   visit_matches(truth, detections, min_score,
-                [&](const Match& match) { append_event(match, events); });
-  sort_by_score(events);
-  return events;
+                [&](const Match& match) { append_outcome(match, outcomes); });
+  sort_by_score(outcomes);
+  return outcomes;
 }
 
-std::vector<RecallPrecision> precision_curve(const std::vector<Event>& events, int wanted) {
+std::vector<RecallPrecision> precision_curve(const std::vector<Outcome>& outcomes, int wanted) {
   std::vector<RecallPrecision> curve;
   int hits = 0;
-  for (const Event& event : events) {
-    hits += event.hit ? 1 : 0;
+  for (const Outcome& outcome : outcomes) {
+    hits += outcome.hit ? 1 : 0;
     curve.push_back({static_cast<double>(hits) / std::max(1, wanted),
                      hits / (static_cast<double>(curve.size()) + 1)});
   }
@@ -108,18 +109,18 @@ std::vector<RecallPrecision> precision_curve(const std::vector<Event>& events, i
 }
 
 Figures measure(const Truth& truth, const Detections& detections, double min_score) {
-  std::vector<Event> events;
+  std::vector<Outcome> outcomes;
   Errors errors = visit_matches(truth, detections, min_score,
-                                [&](const Match& match) { append_event(match, events); });
-  sort_by_score(events);
+                                [&](const Match& match) { append_outcome(match, outcomes); });
+  sort_by_score(outcomes);
   Figures f;
   for (const TruthFrame& frame : truth.frames) f.trees += count_wanted(frame);
-  for (const Event& event : events) ++(event.hit ? f.tp : f.fp);
+  for (const Outcome& outcome : outcomes) ++(outcome.hit ? f.tp : f.fp);
   f.fn = f.trees - f.tp;
   f.precision = static_cast<double>(f.tp) / std::max(1, f.tp + f.fp);
   f.recall = static_cast<double>(f.tp) / std::max(1, f.trees);
   f.f1 = 2 * f.precision * f.recall / std::max(1e-9, f.precision + f.recall);
-  f.ap = average_precision(precision_curve(events, f.trees));
+  f.ap = average_precision(precision_curve(outcomes, f.trees));
   f.dp = median(std::move(errors.position));
   f.dw = median(std::move(errors.diameter));
   f.overlap = median(std::move(errors.overlap));

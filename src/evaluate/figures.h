@@ -25,17 +25,18 @@ Figures measure(const Truth& truth, const Detections& detections, double min_sco
 
 /// A detection that counts, with its score: what precision and recall, AP and reliability are made
 /// of. By falling score.
-struct Event {
+struct Outcome {
   double score = 0;
   bool hit = false;
 };
-std::vector<Event> events_of(const Truth& truth, const Detections& detections, double min_score);
+std::vector<Outcome> outcomes_of(const Truth& truth, const Detections& detections,
+                                 double min_score);
 
-/// Precision over recall, one point an event; precision as the best one at that recall or beyond.
+/// Precision over recall, one point an outcome; precision as the best one at that recall or beyond.
 struct RecallPrecision {
   double recall = 0, precision = 0;
 };
-std::vector<RecallPrecision> precision_curve(const std::vector<Event>& events, int wanted);
+std::vector<RecallPrecision> precision_curve(const std::vector<Outcome>& outcomes, int wanted);
 
 /// The middle of `values`, the mean of the two middle ones of an even number; none of none.
 std::optional<double> median(std::vector<double> values);

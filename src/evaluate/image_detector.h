@@ -23,6 +23,7 @@ class ImageDetector {
   ImageDetector(const std::filesystem::path& camera_toml, DetectorMode mode);
   ImageDetector(const ImageDetector&) = delete;
   ImageDetector& operator=(const ImageDetector&) = delete;
+  ~ImageDetector() = default;
 
   const Camera& camera() const { return camera_; }
   const WarpTable& table() const { return table_; }

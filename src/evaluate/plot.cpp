@@ -69,6 +69,7 @@ void Plot::draw_axes(const std::string& title) {
 void Plot::add_line(const std::vector<cv::Point2d>& points, const Colour& colour,
                     const std::string& name, bool dots) {
   std::vector<cv::Point2d> placed;
+  placed.reserve(points.size());
   for (const cv::Point2d& point : points) placed.push_back(place(point));
   draw_line(canvas_, placed, colour, 2);
   if (dots) {

@@ -7,21 +7,21 @@
 
 namespace bole {
 
-Reliability measure_reliability(std::span<const Event> events) {
+Reliability measure_reliability(std::span<const Outcome> outcomes) {
   Reliability r;
-  for (const Event& event : events) {
+  for (const Outcome& outcome : outcomes) {
     const int bins = static_cast<int>(r.bins.size());
-    Reliability::Bin& bin = r.bins[std::clamp(static_cast<int>(event.score * bins), 0, bins - 1)];
+    Reliability::Bin& bin = r.bins[std::clamp(static_cast<int>(outcome.score * bins), 0, bins - 1)];
     bin.count += 1;
-    bin.mean_score += event.score;
-    bin.hit_share += event.hit ? 1 : 0;
+    bin.mean_score += outcome.score;
+    bin.hit_share += outcome.hit ? 1 : 0;
   }
   for (Reliability::Bin& bin : r.bins) {
     r.calibration_error += std::abs(bin.hit_share - bin.mean_score);
     bin.mean_score /= std::max(1, bin.count);
     bin.hit_share /= std::max(1, bin.count);
   }
-  r.calibration_error /= std::max<double>(1, static_cast<double>(events.size()));
+  r.calibration_error /= std::max<double>(1, static_cast<double>(outcomes.size()));
   return r;
 }
 

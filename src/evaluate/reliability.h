@@ -18,7 +18,7 @@ struct Reliability {
   /// Expected calibration error: mean over detections of |hit share - mean score| of their bin.
   double calibration_error = 0;
 };
-Reliability measure_reliability(std::span<const Event> events);
+Reliability measure_reliability(std::span<const Outcome> outcomes);
 
 /// Share of the hits on metric frames whose true range lies within two range_sigma; and their
 /// number.

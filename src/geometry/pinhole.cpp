@@ -81,7 +81,7 @@ namespace {
 
 std::vector<double> matrix(const YAML::Node& root, const char* key, std::size_t low,
                            std::size_t high, const std::string& file) {
-  const auto values = root[key]["data"].as<std::vector<double>>();
+  auto values = root[key]["data"].as<std::vector<double>>();
   if (values.size() < low || values.size() > high) {
     throw ConfigError(file, key, "has " + std::to_string(values.size()) + " numbers",
                       "needs " + std::to_string(low) + " to " + std::to_string(high));

@@ -62,7 +62,7 @@ void check_layout(Walker walker, const tree_list_t& /*type*/) {
 }
 
 void check_layout(Walker walker, const status_t& /*type*/) {
-  walker.skip(3 * 8);
+  walker.skip(8 + 8 + 8);
   for (int text = 0; text < 3; ++text) walker.skip_text();
   walker.skip(1);
   walker.skip_text();

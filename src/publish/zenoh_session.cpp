@@ -107,7 +107,7 @@ struct ZenohSession::Impl {
 
 ZenohSession::ZenohSession(const ZenohConfig& config, const std::optional<ZenohIdentity>& identity,
                            const std::vector<std::string>& subscribe)
-    : impl_(std::make_unique<Impl>(open(config, to_rust(config, identity, subscribe)))) {}
+    : impl_(std::make_unique<Impl>(Impl{open(config, to_rust(config, identity, subscribe))})) {}
 
 ZenohSession::ZenohSession(ZenohSession&&) noexcept = default;
 ZenohSession& ZenohSession::operator=(ZenohSession&&) noexcept = default;

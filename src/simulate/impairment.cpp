@@ -77,11 +77,10 @@ Picture averaged(const Picture& picture, int radius) {
   };
   const int width = picture.size.width, height = picture.size.height;
   for (int k = 0; k < 3; ++k) {
-    for (int row = 0; row < height; ++row)
-      pass(3 * static_cast<std::ptrdiff_t>(row) * width + k, 3, width);
-    for (int column = 0; column < width; ++column)
-      pass(3 * static_cast<std::ptrdiff_t>(column) + k, 3 * static_cast<std::ptrdiff_t>(width),
-           height);
+    for (std::ptrdiff_t row = 0; row < height; ++row) pass(3 * row * width + k, 3, width);
+    for (std::ptrdiff_t column = 0; column < width; ++column) {
+      pass(3 * column + k, std::ptrdiff_t{3} * width, height);
+    }
   }
   return result;
 }

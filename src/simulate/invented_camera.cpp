@@ -57,6 +57,7 @@ std::vector<double> fit(const std::vector<double>& x, const std::vector<double>&
 
 std::vector<double> steps(double low, double high, int count) {
   std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) values.push_back(low + (high - low) * i / (count - 1));
   return values;
 }

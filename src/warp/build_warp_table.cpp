@@ -87,7 +87,7 @@ Arc longest_blind_arc(const std::vector<SeenRows>& columns) {
   Arc longest;
   Arc run;
   for (int j = 0; j < 2 * count; ++j) {
-    if (!columns[static_cast<std::size_t>(j % count)].empty()) {
+    if (!columns[static_cast<std::size_t>(j < count ? j : j - count)].empty()) {
       run = {};
       continue;
     }

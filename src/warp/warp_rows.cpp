@@ -124,7 +124,7 @@ HWY_INLINE void warp_tile(const WarpEntry* entries, const std::uint8_t* base,
   const V32 step_bytes = hn::Set(d, static_cast<std::uint32_t>(image.stride) << 16 |
                                         static_cast<std::uint32_t>(image.pixel_bytes));
   HWY_ALIGN std::uint32_t offsets[kTilePixels];
-  for (int k = 0; k < rows * kTileColumns; k += kLanes) {
+  for (int k = 0; k < kTilePixels; k += kLanes) {
     const auto whole = hn::ShiftRight<kWarpBits>(hn::BitCast(d16, hn::LoadU(d, entries + k)));
     hn::Store(multiply_add_pairs(d, hn::BitCast(d, whole), step_bytes), d, offsets + k);
   }
@@ -173,7 +173,8 @@ void warp_tiles(const WarpStrip& strip, std::size_t lead) {
         bytes + tiles[t].row * static_cast<std::size_t>(strip.image.stride) +
         tiles[t].column * static_cast<std::size_t>(strip.image.pixel_bytes) + lead;
     warp_tile<Layout>(entries + static_cast<std::ptrdiff_t>(t) * kTilePixels, base, strip.image,
-                      strip.rows, {strip.out.pixels + t * kTileColumns, strip.out.stride});
+                      strip.rows,
+                      {strip.out.pixels + std::ptrdiff_t{t} * kTileColumns, strip.out.stride});
   }
 }
 

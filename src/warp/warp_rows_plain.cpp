@@ -35,11 +35,11 @@ Source source_of(const WarpTile& tile, WarpEntry entry) {
 }  // namespace
 
 void warp_tile_plain(const WarpStrip& strip, int tile) {
-  const auto number = static_cast<std::size_t>(strip.strip * strip.table.tiles_per_strip() + tile);
+  const std::size_t number = strip.strip * strip.table.tiles_per_strip() + tile;
   const WarpEntry* entry = &strip.table.entries()[number * kTilePixels];
   for (int i = 0; i < strip.rows; ++i) {
-    std::uint8_t* const out =
-        strip.out.pixels + static_cast<std::ptrdiff_t>(i) * strip.out.stride + tile * kTileColumns;
+    std::uint8_t* const out = strip.out.pixels + std::ptrdiff_t{i} * strip.out.stride +
+                              std::ptrdiff_t{tile} * kTileColumns;
     for (int j = 0; j < kTileColumns; ++j) {
       out[j] = interpolate(strip.image, source_of(strip.table.tiles()[number], *entry++));
     }

@@ -156,10 +156,8 @@ std::span<const std::byte> WarpTable::bytes() const {
 }
 
 Pixel WarpTable::source(int row, int column) const {
-  const auto tile =
-      static_cast<std::size_t>(row / kTileRows * tiles_per_strip() + column / kTileColumns);
-  const auto pixel =
-      static_cast<std::size_t>(row % kTileRows * kTileColumns + column % kTileColumns);
+  const std::size_t tile = row / kTileRows * tiles_per_strip() + column / kTileColumns;
+  const std::size_t pixel = row % kTileRows * kTileColumns + column % kTileColumns;
   const auto stray = std::ranges::find_if(
       strays_, [&](const WarpStray& s) { return s.tile == tile && s.pixel == pixel; });
   if (stray != strays_.end()) {

@@ -44,25 +44,25 @@ Detections detections_of(const std::vector<std::vector<Tree>>& frames) {
 }
 
 TEST(Reliability, IsPerfectWhereSharesAreScores) {
-  std::vector<Event> events;
-  for (int k = 0; k < 100; ++k) events.push_back({0.75, k < 75});
-  for (int k = 0; k < 100; ++k) events.push_back({0.25, k < 25});
-  EXPECT_NEAR(measure_reliability(events).calibration_error, 0, 1e-12);
+  std::vector<Outcome> outcomes;
+  for (int k = 0; k < 100; ++k) outcomes.push_back({0.75, k < 75});
+  for (int k = 0; k < 100; ++k) outcomes.push_back({0.25, k < 25});
+  EXPECT_NEAR(measure_reliability(outcomes).calibration_error, 0, 1e-12);
 }
 
 TEST(Reliability, WeighsErrorsByDetections) {
   // Nine detections that promise 0.95 and never hold it, one that promises 0.15 and is true.
-  std::vector<Event> events(9, {0.95, false});
-  events.push_back({0.15, true});
-  const Reliability r = measure_reliability(events);
+  std::vector<Outcome> outcomes(9, {0.95, false});
+  outcomes.push_back({0.15, true});
+  const Reliability r = measure_reliability(outcomes);
   EXPECT_NEAR(r.calibration_error, (9 * 0.95 + 0.85) / 10, 1e-12);
   EXPECT_EQ(r.bins[9].count, 9);
   EXPECT_EQ(r.bins[1].hit_share, 1);
 }
 
 TEST(Reliability, PutsAScoreOfOneIntoTheLastBin) {
-  const std::vector<Event> events = {{1, true}};
-  EXPECT_EQ(measure_reliability(events).bins[9].count, 1);
+  const std::vector<Outcome> outcomes = {{1, true}};
+  EXPECT_EQ(measure_reliability(outcomes).bins[9].count, 1);
 }
 
 TEST(RangeTrust, CountsTrueRangesWithinTwoSigma) {
