@@ -69,9 +69,11 @@ void check_layout(Walker walker, const status_t& /*type*/) {
   walker.skip(1);
   walker.skip_text();
   walker.skip(2 * 8 + 5 * 4);
-  for (std::int64_t drop = walker.count(4 + 1 + 8); drop > 0; --drop) {
-    walker.skip_text();
-    walker.skip(8);
+  for (int list = 0; list < 2; ++list) {  // drops, camera_events
+    for (std::int64_t counter = walker.count(4 + 1 + 8); counter > 0; --counter) {
+      walker.skip_text();
+      walker.skip(8);
+    }
   }
   for (std::int64_t bus = walker.count(4 + 1 + 1 + 3 * 8); bus > 0; --bus) {
     walker.skip_text();

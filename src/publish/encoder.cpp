@@ -98,7 +98,9 @@ void encode_status(status_t status, std::vector<std::byte>& bytes) {
                        &status.latency_p99_ms, &status.latency_max_ms}) {
     make_finite(*value);
   }
-  for (counter_t& drop : status.drops) cut(drop.name, kMostStatusTextBytes);
+  for (std::vector<counter_t>* counters : {&status.drops, &status.camera_events}) {
+    for (counter_t& counter : *counters) cut(counter.name, kMostStatusTextBytes);
+  }
   for (bus_t& bus : status.buses) {
     cut(bus.name, kMostStatusTextBytes);
     cut(bus.last_error, kMostStatusTextBytes);
@@ -107,6 +109,7 @@ void encode_status(status_t status, std::vector<std::byte>& bytes) {
     make_finite(bus.handover_max_us);
   }
   status.num_drops = static_cast<std::int32_t>(status.drops.size());
+  status.num_camera_events = static_cast<std::int32_t>(status.camera_events.size());
   status.num_buses = static_cast<std::int32_t>(status.buses.size());
   bytes.resize(static_cast<std::size_t>(status.getEncodedSize()));
   status.encode(bytes.data(), 0, static_cast<int>(bytes.size()));

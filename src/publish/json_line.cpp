@@ -82,6 +82,13 @@ void write_tree(JsonWriter& json, const tree_t& tree) {
   });
 }
 
+void write_counter(JsonWriter& json, const counter_t& counter) {
+  json.object([&] {
+    json.field("name", counter.name);
+    json.field("count", counter.count);
+  });
+}
+
 void write_bus(JsonWriter& json, const bus_t& bus) {
   json.object([&] {
     json.field("name", bus.name);
@@ -142,12 +149,10 @@ void write_json_line(const status_t& status, std::string& line) {
     json.field("latency_p99_ms", status.latency_p99_ms);
     json.field("latency_max_ms", status.latency_max_ms);
     json.field("num_drops", status.num_drops);
-    json.array("drops", status.drops, [&](const counter_t& drop) {
-      json.object([&] {
-        json.field("name", drop.name);
-        json.field("count", drop.count);
-      });
-    });
+    json.array("drops", status.drops, [&](const counter_t& drop) { write_counter(json, drop); });
+    json.field("num_camera_events", status.num_camera_events);
+    json.array("camera_events", status.camera_events,
+               [&](const counter_t& event) { write_counter(json, event); });
     json.field("num_buses", status.num_buses);
     json.array("buses", status.buses, [&](const bus_t& bus) { write_bus(json, bus); });
     json.field("last_error", status.last_error);

@@ -42,6 +42,8 @@ class BusWorker {
   /// Makes a publish() that waits give up.
   void interrupt() noexcept { publisher_->interrupt(); }
   bool finished() const;
+  /// Of its thread.
+  std::thread::native_handle_type native_handle() { return thread_.native_handle(); }
 
   bus_t health() const;
 

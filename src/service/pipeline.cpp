@@ -17,14 +17,6 @@ constexpr std::int64_t kHeartbeatNs = 1'000'000'000;
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 constexpr std::int64_t kBusPatienceNs = 500'000'000;  // for a bus to end when we are stopped
 
-void set_realtime(std::thread& thread, int priority) {
-  const sched_param parameters{priority};
-  if (const int error = ::pthread_setschedparam(thread.native_handle(), SCHED_FIFO, &parameters)) {
-    spdlog::warn("service.realtime_priority: {}; grant CAP_SYS_NICE or raise LimitRTPRIO",
-                 std::generic_category().message(error));
-  }
-}
-
 std::int64_t now_ns() { return SystemClock().mono_ns(); }
 
 }  // namespace
@@ -60,10 +52,15 @@ Pipeline::~Pipeline() {
 }
 
 void Pipeline::on_camera(const CameraEvent& event) {
+  telemetry_.capture_counts(supervisor_.counts());
   telemetry_.capture_event(event);
   service_manager_.status(std::string(name(event.state)) + ": " + event.reason);
   if (event.state == CameraState::streaming) {
-    for (const std::string& line : source_.refused()) spdlog::warn("camera: {}", line);
+    const std::vector<std::string> refused = source_.refused();
+    if (refused != refused_) {
+      for (const std::string& line : refused) spdlog::warn("camera: {}", line);
+    }
+    refused_ = refused;
   }
   if (event.state == CameraState::no_camera || event.state == CameraState::stalled) {
     service_manager_.ready();
@@ -157,13 +154,23 @@ bool Pipeline::finished() const {
          std::ranges::all_of(buses_, [](const auto& bus) { return bus->finished(); });
 }
 
+void Pipeline::make_realtime() {
+  std::vector<pthread_t> threads{capture_thread_.native_handle(), process_thread_.native_handle()};
+  for (const auto& bus : buses_) threads.push_back(bus->native_handle());
+  const sched_param parameters{realtime_priority_};
+  for (const pthread_t thread : threads) {
+    if (const int error = ::pthread_setschedparam(thread, SCHED_FIFO, &parameters); error != 0) {
+      spdlog::warn("service.realtime_priority: {}; grant CAP_SYS_NICE or raise LimitRTPRIO",
+                   std::generic_category().message(error));
+      return;
+    }
+  }
+}
+
 void Pipeline::run(int stop_fd) {
   capture_thread_ = std::thread([this] { capture(); });
   process_thread_ = std::thread([this] { process(); });
-  if (realtime_priority_ > 0) {
-    set_realtime(capture_thread_, realtime_priority_);
-    set_realtime(process_thread_, realtime_priority_);
-  }
+  if (realtime_priority_ > 0) make_realtime();
   std::int64_t next_beat_ns = 0;
   std::int64_t give_up_ns = kNever;
   bool closing = false;

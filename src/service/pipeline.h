@@ -20,8 +20,8 @@ namespace bole {
 class Pipeline {
  public:
   /// All but `publishers` must outlive the pipeline. `lockstep`: between capture, processing and
-  /// buses nothing is overwritten; the faster one waits. `realtime_priority`: of capture and
-  /// processing under SCHED_FIFO; 0: none. `trace` may be null.
+  /// buses nothing is overwritten; the faster one waits. `realtime_priority`: of capture,
+  /// processing and the buses under SCHED_FIFO; 0: none. `trace` may be null.
   Pipeline(FrameSource& source, Clock& clock, Processor& processor, Telemetry& telemetry,
            std::vector<std::unique_ptr<Publisher>> publishers, bool lockstep, int realtime_priority,
            Trace* trace);
@@ -47,6 +47,7 @@ class Pipeline {
   void trace(const Captured& captured, const Processor::Result& result);
   void on_camera(const CameraEvent& event);
   void publish_status(bool stopping);
+  void make_realtime();
   bool finished() const;
   // Until then, or until something needs attention; true when `stop_fd` (-1: none) is readable.
   bool wait(int stop_fd, std::int64_t until_ns);
@@ -60,7 +61,8 @@ class Pipeline {
   const int realtime_priority_;
   Trace* const trace_;
   ServiceManager service_manager_;
-  Wakeup attention_;  // the status has changed, or a thread has ended
+  std::vector<std::string> refused_;  // what was last told of it
+  Wakeup attention_;                  // the status has changed, or a thread has ended
   std::atomic<bool> status_due_{true};
   std::atomic<bool> processed_all_{false};
   Supervisor supervisor_;

@@ -120,6 +120,15 @@ std::vector<counter_t> Telemetry::drops() const {
   return drops;
 }
 
+std::vector<counter_t> Telemetry::camera_events() const {
+  return {{"losses", capture_.losses},
+          {"stalls", capture_.stalls},
+          {"restarts", capture_.restarts},
+          {"failed_opens", capture_.failed_opens},
+          {"settings_refused", capture_.settings_refused},
+          {"stamps_corrected", capture_.stamps_corrected}};
+}
+
 status_t Telemetry::status(std::int64_t now_ns, bool stopping) {
   const std::lock_guard lock(mutex_);
   status_t status{};
@@ -134,6 +143,7 @@ status_t Telemetry::status(std::int64_t now_ns, bool stopping) {
   status.frames = capture_.frames;
   status.lists = lists_;
   status.drops = drops();
+  status.camera_events = camera_events();
   status.last_error = last_error_;
 
   const float seconds =

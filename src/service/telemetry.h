@@ -53,6 +53,7 @@ class Telemetry {
   static constexpr std::size_t kRecent = 512;
 
   std::vector<counter_t> drops() const;
+  std::vector<counter_t> camera_events() const;
   void note(const std::string& trouble);
 
   mutable std::mutex mutex_;

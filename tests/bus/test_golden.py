@@ -45,6 +45,7 @@ def test_status(types):
     assert (status.state_reason, status.degraded_reason) == ("unplugged", "dark")
     assert status.degraded and status.last_error == "no multicast route"
     assert [(drop.name, drop.count) for drop in status.drops] == [("overwritten", 2), ("bad_frame", 0)]
+    assert [(event.name, event.count) for event in status.camera_events] == [("losses", 3)]
     (bus,) = status.buses
     assert (bus.name, bus.healthy, bus.published, bus.overwritten) == ("lcm", True, 147, 1)
     assert list(bus.handover_histogram) == list(range(20))

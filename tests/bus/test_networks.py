@@ -59,8 +59,12 @@ def test_losses_are_counted_exactly(programs, raw_drive, tmp_path, types, report
     assert bus_summary(log, "lcm")[0] == len(on_lcm) + lost
     overwritten = bus_summary(log, "lcm")[1]
     assert gaps(seqs(on_lcm)) <= lost + overwritten
-    assert gaps(seqs(on_zenoh)) + len(on_zenoh) <= lists
-    assert len(on_zenoh) > 0.6 * lists  # TCP mends what the link loses; a busy machine drops some
+    # TCP mends what the link loses: what was published came, but for the last second's. A busy
+    # machine may take seconds to connect and overwrite lists; these were never published.
+    published, not_published = bus_summary(log, "zenoh")[0], sum(bus_summary(log, "zenoh")[1:])
+    assert gaps(seqs(on_zenoh)) <= not_published
+    assert len(on_zenoh) > published - 10
+    assert len(on_zenoh) > 0.9 * (lists - seqs(on_zenoh)[0])
     assert ages["lcm"][0] > 30 and ages["zenoh"][0] > 30
     assert grown_kb < 1000
 

@@ -1,6 +1,7 @@
 """Exit codes, one-line errors, and what the daemon must not bring with it."""
 
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -55,6 +56,21 @@ def test_boled_uses_little_memory_and_ends_at_sigterm(programs, drive):
     assert daemon.returncode == 0
     assert "latency p50" in log
     assert int(re.search(r"RssAnon:\s+(\d+) kB", status)[1]) < 40_000
+
+
+def test_realtime_priority_is_that_of_capture_processing_and_every_bus(programs, drive):
+    command = [programs / "boled", "--camera", drive / "camera.toml", "--source", f"replay:{drive}",
+               "--loop", "--publish", "lcm,jsonl:/dev/null", "--set", "service.realtime_priority=7"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as daemon:
+        time.sleep(1)
+        threads = [stat.read_text().rpartition(") ")[2].split()
+                   for stat in pathlib.Path(f"/proc/{daemon.pid}/task").glob("*/stat")]
+        daemon.terminate()
+        _, log = daemon.communicate(timeout=5)
+    if "CAP_SYS_NICE" in log:
+        pytest.skip("this user may not ask for SCHED_FIFO")
+    # Fields 40 and 41 of proc(5), counted from the one behind the name.
+    assert sum(thread[37:39] == ["7", str(os.SCHED_FIFO)] for thread in threads) == 4
 
 
 def test_lut_builds_a_table_that_fits_its_camera_only_and_whole(bolectl, drive, tmp_path):

@@ -10,7 +10,7 @@ import lcm
 import pytest
 import zenoh
 
-from processes import eventually, free_endpoint, listening
+from processes import eventually, gaps, free_endpoint, listening
 
 CLIENT = pathlib.Path(__file__).with_name("zenoh_client.py")
 
@@ -44,7 +44,14 @@ def test_the_same_lists_byte_for_byte_on_both_buses(programs, drive, lcm_url):
         assert received[data[32:40]] == data
 
 
-def test_listen_reads_zenoh_and_names_foreign_payloads(programs, tmp_path):
+def bus_health(session, types):
+    """How the one bus of the only daemon does, by its last status."""
+    (reply,) = session.get("bole/*/*/status", timeout=5)
+    (bus,) = types.status_t.decode(reply.ok.payload.to_bytes()).buses
+    return bus
+
+
+def test_listen_reads_zenoh_and_names_foreign_payloads(programs, types, tmp_path):
     endpoint = free_endpoint()
     fake = subprocess.Popen(
         [programs / "bolectl", "publish-fake", "--publish", "zenoh", "--set", "zenoh.mode=router",
@@ -64,14 +71,24 @@ def test_listen_reads_zenoh_and_names_foreign_payloads(programs, tmp_path):
             while listener.poll() is None and time.monotonic() < end:
                 session.put("bole/a/b/trees", b"not a list")
                 time.sleep(0.1)
-        log = listener.communicate()[1]
+            log = listener.communicate()[1]
+            entries = list(map(json.loads, (tmp_path / "out").read_text().splitlines()))
+            seqs = [entry["seq"] for entry in entries if "trees" in entry]
+
+            def dropped_up_to_the_last():
+                """(Lists that the publisher had to drop,) once its status covers what was heard."""
+                bus = bus_health(session, types)
+                dropped = bus.overwritten + bus.failed
+                return (dropped,) if bus.published + dropped > seqs[-1] else None
+
+            (dropped,) = eventually(dropped_up_to_the_last)
     finally:
         listener.kill()
         fake.terminate()
         fake.wait(10)
-    summaries = {entry["stream"]: entry["summary"]
-                 for entry in map(json.loads, (tmp_path / "out").read_text().splitlines())
-                 if "summary" in entry}
+    summaries = {entry["stream"]: entry["summary"] for entry in entries if "summary" in entry}
     (ours,) = [name for name in summaries if name.startswith("bole/robot/")]
     assert summaries[ours]["lists"] == 20
+    # Nothing is lost but what a busy machine made the publisher overwrite.
+    assert summaries[ours]["lost"] == gaps(seqs) <= dropped
     assert summaries["bole/a/b/trees"]["foreign"] > 0 and "fingerprint" in log

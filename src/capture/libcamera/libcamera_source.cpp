@@ -13,6 +13,7 @@
 #include "capture/libcamera/manager.h"
 #include "capture/libcamera/session.h"
 #include "capture/libcamera/settings.h"
+#include "capture/libcamera/usb_camera.h"
 #include "capture/plugin.h"
 #include "capture/sequence_count.h"
 
@@ -20,6 +21,7 @@ namespace bole {
 namespace {
 
 constexpr double kNotMetered = -1;
+constexpr std::chrono::seconds kLibcameraPatience{5};
 
 std::string shown(ImageSize size) {
   return std::to_string(size.width) + " x " + std::to_string(size.height);
@@ -94,18 +96,28 @@ class LibcameraSource final : public FrameSource {
       : id_(std::move(id)), settings_(settings), clock_(clock) {}
   LibcameraSource(const LibcameraSource&) = delete;
   LibcameraSource& operator=(const LibcameraSource&) = delete;
-  ~LibcameraSource() override { close(); }
+  ~LibcameraSource() override {
+    close();
+    if (unplugged_) unplugged_->await_libcamera(kLibcameraPatience);
+  }
 
   void open() override {
     try {
+      forget_unplugged();
       start();
     } catch (const CaptureError& error) {
+      if (!unplugged_) manager_.reset();
       throw CaptureError(error.what() + in_brackets(id_));
     }
   }
   Grab grab(std::chrono::nanoseconds timeout) override;
   void close() noexcept override {
-    if (session_) session_->stop();
+    if (session_ && session_->libcamera_lags()) {
+      unplugged_ = session_;
+    } else if (session_) {
+      session_->stop();
+      manager_.reset();
+    }
     session_.reset();
     exposure_.reset();
   }
@@ -116,6 +128,7 @@ class LibcameraSource final : public FrameSource {
   void metered(double mean) noexcept override { mean_ = mean; }
 
  private:
+  void forget_unplugged();
   void start();
   void expose();
   void wait(std::int64_t timeout_ns) const;
@@ -128,8 +141,11 @@ class LibcameraSource final : public FrameSource {
   const CameraSettings settings_;
   const Clock& clock_;
   Wakeup interrupted_;
-  std::shared_ptr<libcamera::CameraManager> manager_;  // kept over outages: it sees the replug
+  // Only while the camera is open: libcamera 0.0.3 crashes when it sees a device's number come
+  // back.
+  std::shared_ptr<libcamera::CameraManager> manager_;
   std::shared_ptr<LibcameraSession> session_;
+  std::shared_ptr<LibcameraSession> unplugged_;  // closed, but libcamera does not know yet
   SequenceCount sequence_;
   std::optional<ExposureController> exposure_;
   std::atomic<double> mean_ = kNotMetered;
@@ -140,8 +156,17 @@ class LibcameraSource final : public FrameSource {
   std::vector<std::string> refused_;
 };
 
+void LibcameraSource::forget_unplugged() {
+  if (!unplugged_) return;
+  if (unplugged_->libcamera_lags()) throw CaptureError(kNotThere);
+  unplugged_->stop();
+  unplugged_.reset();
+  manager_.reset();
+}
+
 void LibcameraSource::start() {
-  if (!manager_) manager_ = camera_manager();
+  if (usb_camera_is_missing(id_)) throw CaptureError(kNotThere);
+  manager_ = camera_manager();
   auto camera = manager_->get(id_);
   if (!camera) throw CaptureError(kNotThere);
   Acquired acquired(std::move(camera));
@@ -176,7 +201,8 @@ void LibcameraSource::wait(std::int64_t timeout_ns) const {
   constexpr std::int64_t kSecond = 1'000'000'000;
   timeout_ns = std::max<std::int64_t>(timeout_ns, 0);
   const timespec timeout{timeout_ns / kSecond, timeout_ns % kSecond};
-  std::array<pollfd, 2> events{pollfd{session_->fd(), POLLIN, 0},
+  std::array<pollfd, 3> events{pollfd{session_->fd(), POLLIN, 0},
+                               pollfd{session_->unplug_fd(), POLLPRI, 0},
                                pollfd{interrupted_.fd(), POLLIN, 0}};
   ::ppoll(events.data(), events.size(), &timeout, nullptr);
 }

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "capture/libcamera/settings.h"
@@ -32,7 +33,7 @@ void sync(const libcamera::SharedFD& fd, std::uint64_t flags) {
 LibcameraSession::LibcameraSession(std::shared_ptr<libcamera::Camera> camera,
                                    libcamera::Stream* stream, const BufferLayout& layout,
                                    const libcamera::ControlList& controls)
-    : camera_(std::move(camera)), layout_(layout) {
+    : camera_(std::move(camera)), unplug_watch_(camera_->id()), layout_(layout) {
   try {
     start(stream, controls);
   } catch (...) {
@@ -110,8 +111,15 @@ void LibcameraSession::on_completed(libcamera::Request* request) {
 }
 
 void LibcameraSession::on_disconnected() {
-  gone_ = true;
+  disconnected_ = true;
   posted_.raise();
+}
+
+void LibcameraSession::await_libcamera(std::chrono::milliseconds timeout) const {
+  const auto end = std::chrono::steady_clock::now() + timeout;
+  while (libcamera_lags() && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
 }
 
 int LibcameraSession::take(std::span<Completed, kMaxBuffers> completed) {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -13,6 +14,7 @@
 #include "base/wakeup.h"
 #include "capture/buffer_layout.h"
 #include "capture/frame_source.h"
+#include "capture/libcamera/usb_camera.h"
 
 namespace bole {
 
@@ -44,7 +46,15 @@ class LibcameraSession : public FrameBuffers {
   int fd() const { return posted_.fd(); }
   /// Moves what was posted to `completed`; how many.
   int take(std::span<Completed, kMaxBuffers> completed);
-  bool gone() const { return gone_; }
+  /// Whether the camera is gone, by the kernel's word or libcamera's.
+  bool gone() const { return disconnected_ || unplug_watch_.unplugged(); }
+  /// Ready for POLLPRI when the kernel says so; fd() when libcamera does.
+  int unplug_fd() const { return unplug_watch_.fd(); }
+  /// Whether libcamera has still to notice that the camera is gone. Until then it must not be
+  /// stopped: libcamera 0.0.3 asserts that all requests come back, which they do not.
+  bool libcamera_lags() const { return !disconnected_ && unplug_watch_.unplugged(); }
+  /// Waits until libcamera has noticed, at most `timeout`.
+  void await_libcamera(std::chrono::milliseconds timeout) const;
   int count() const { return static_cast<int>(requests_.size()); }
 
   /// The filled buffer as an image, made visible to the processor; nullopt when it is too short.
@@ -72,6 +82,7 @@ class LibcameraSession : public FrameBuffers {
   void end() noexcept;
 
   std::shared_ptr<libcamera::Camera> camera_;
+  const UnplugWatch unplug_watch_;
   const BufferLayout layout_;
   std::unique_ptr<libcamera::FrameBufferAllocator> allocator_;
   std::vector<std::unique_ptr<libcamera::Request>> requests_;
@@ -79,7 +90,7 @@ class LibcameraSession : public FrameBuffers {
   std::atomic<int> exposure_us_ = 0;
 
   Wakeup posted_;
-  std::atomic<bool> gone_ = false;
+  std::atomic<bool> disconnected_ = false;
   std::mutex posted_mutex_;  // of the two below; taken in libcamera's thread
   std::array<Completed, kMaxBuffers> waiting_;
   int waiting_count_ = 0;

@@ -1,7 +1,7 @@
 """A camera that comes back with another format or size, or refuses a control."""
 
 from rig import frames
-from rig.appliance import Boled, Listener
+from rig.appliance import Boled, Listener, camera_events
 from rig.camera import Camera
 from rig.wait import expect
 
@@ -52,3 +52,5 @@ def refuses_a_control():
             camera.wait_for_event("control_refused", 30, name="gain", value=77)
             listener.wait_for_list(30)
             expect(len(boled.log_lines("gain")), 1, "log lines about it")
+            _, status = listener.wait_for_state("streaming", 10)
+            expect(camera_events(status)["settings_refused"], 1, "settings refused")

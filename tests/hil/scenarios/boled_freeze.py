@@ -3,7 +3,7 @@
 import time
 
 from rig import frames
-from rig.appliance import Boled, Listener
+from rig.appliance import Boled, Listener, camera_events
 from rig.camera import Camera
 from rig.wait import expect
 
@@ -29,4 +29,6 @@ def run():
             listener.wait_for_new_list(20)
             listener.wait_for_state("streaming", 5, mark)
             expect(len(boled.log_lines("stalled")), 1, "log lines about it")
+            events = camera_events(listener.last_status())
+            expect((events["stalls"], events["restarts"] > 0), (1, True), f"counted in {events}")
     return f"seen within {seen - frozen:.2f} s"

@@ -3,7 +3,7 @@
 import os
 
 from rig import frames
-from rig.appliance import Boled, Listener
+from rig.appliance import Boled, Listener, camera_events
 from rig.camera import Camera
 from rig.wait import expect
 
@@ -21,6 +21,7 @@ def run():
             camera.plug()
             listener.wait_for_new_list(20)
             expect(len(boled.log_lines("no camera")), 1, "log lines about the missing camera")
+            assert camera_events(listener.last_status())["failed_opens"] > 0, "no try was counted"
         os.chmod(camera.device, 0o600)
         mark = listener.mark()
         with Boled(f"v4l2:{camera.link}", SIZE, wrapper=AS_NOBODY, name="boled_as_nobody") as boled:

@@ -3,9 +3,9 @@
 import time
 
 from rig import environment, frames
-from rig.appliance import Boled, Listener
+from rig.appliance import Boled, Listener, camera_events
 from rig.camera import Camera
-from rig.wait import wait_until
+from rig.wait import expect, wait_until
 
 SMOKE = True
 TIME_LIMIT_S = 300
@@ -32,6 +32,7 @@ def run():
             # A frame in processing holds the buffers of its stream a moment longer.
             wait_until(lambda: boled.holdings() == holdings, 10,
                        f"boled holds {holdings} again, as after the first outage")
+            expect(camera_events(listener.last_status())["losses"], 1 + rounds, "losses counted")
     assert len(devices) > 1, f"the device was always {devices}"
     assert max(seen) <= OUTAGE_SEEN_WITHIN_S, f"outage seen after {max(seen):.2f} s"
     assert max(again) <= STREAMS_AGAIN_WITHIN_S, f"streaming again after {max(again):.2f} s"

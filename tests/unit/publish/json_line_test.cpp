@@ -54,6 +54,7 @@ TEST(JsonLine, AStatusIsValidJson) {
   const auto status = nlohmann::json::parse(line);
   EXPECT_EQ(status.at("buses").at(0).at("handover_histogram").size(), 20U);
   EXPECT_EQ(status.at("drops").at(0).at("name"), "overwritten");
+  EXPECT_EQ(status.at("camera_events").at(0).at("count"), 3);
   EXPECT_EQ(status.at("degraded"), true);
 }
 

@@ -74,6 +74,7 @@ inline status_t sample_status() {
   status.latency_p99_ms = 4.75F;
   status.latency_max_ms = 9;
   status.drops = {{"overwritten", 2}, {"bad_frame", 0}};
+  status.camera_events = {{"losses", 3}};
   bus_t bus{};
   bus.name = "lcm";
   bus.healthy = 1;

@@ -57,6 +57,25 @@ TEST(Telemetry, DropsAreToldByCause) {
   EXPECT_EQ(status.last_error, "x.png: is cut short");
 }
 
+TEST(Telemetry, WhatBefellTheCameraIsCounted) {
+  Telemetry telemetry("1.0", "front");
+  CaptureCounts counts;
+  counts.losses = 1;
+  counts.stalls = 2;
+  counts.restarts = 3;
+  counts.failed_opens = 4;
+  counts.settings_refused = 5;
+  counts.stamps_corrected = 6;
+  telemetry.capture_counts(counts);
+  const std::vector<counter_t> events = telemetry.status(0, false).camera_events;
+  EXPECT_EQ(count_of(events, "losses"), 1);
+  EXPECT_EQ(count_of(events, "stalls"), 2);
+  EXPECT_EQ(count_of(events, "restarts"), 3);
+  EXPECT_EQ(count_of(events, "failed_opens"), 4);
+  EXPECT_EQ(count_of(events, "settings_refused"), 5);
+  EXPECT_EQ(count_of(events, "stamps_corrected"), 6);
+}
+
 TEST(Telemetry, RatesAreOverTheTimeSinceTheLastStatus) {
   Telemetry telemetry("1.0", "front");
   const std::int64_t now_ns = SystemClock().mono_ns();

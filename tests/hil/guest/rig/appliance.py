@@ -103,7 +103,16 @@ class Listener(Process):
 
 def drops(status):
     """A status' counters of frames that gave no list, by cause."""
-    return {counter["name"]: counter["count"] for counter in status["drops"]}
+    return _by_name(status["drops"])
+
+
+def camera_events(status):
+    """A status' counters of what befell the camera."""
+    return _by_name(status["camera_events"])
+
+
+def _by_name(counters):
+    return {counter["name"]: counter["count"] for counter in counters}
 
 
 def _is_list(message):

@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import resource
 import subprocess
 
 OUT = pathlib.Path("/hil/out")
@@ -27,6 +28,9 @@ def is_smoke():
 
 def prepare():
     """What every scenario needs, done once."""
+    # A program that crashes leaves its core with the logs.
+    resource.setrlimit(resource.RLIMIT_CORE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+    pathlib.Path("/proc/sys/kernel/core_pattern").write_text(f"{OUT}/core.%e.%p")
     subprocess.run(["modprobe", "-a", "vhci-hcd", "uvcvideo"], check=True)
     subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
     subprocess.run(["ip", "route", "add", "239.0.0.0/8", "dev", "lo"], check=True)

@@ -50,19 +50,31 @@ class Mode:
 
 def rendered(fourcc, size, count=None):
     """A mode with the first `count` rendered pictures; all if None."""
+    return recording(rendered_folder(fourcc, size), fourcc, size, count)
+
+
+def recording(folder, fourcc, size, count=None):
+    """A mode with the first `count` pictures of a folder; all if None."""
     width, height = size
-    mode = Mode(fourcc, width, height,
-                environment.SCRATCH / f"rendered_{fourcc}_{width}x{height}_{count or 'all'}")
+    name = f"{folder.name}_{fourcc}_{width}x{height}_{count or 'all'}"
+    mode = Mode(fourcc, width, height, environment.SCRATCH / name)
     if not mode.path.exists():
-        files = sorted(rendered_folder(fourcc, size).glob("frame_*"))[:count]
+        files = sorted(folder.glob("frame_*"))[:count]
         mode.path.write_bytes(b"".join(file.read_bytes() for file in files))
     return mode
 
 
 def rendered_folder(fourcc, size):
-    """The pictures of a drive through a wood (host/frames) in this format, ready to be replayed."""
-    ending = PROJECT_NAMES[fourcc]
-    folder = environment.build("hil/frames", f"{size[0]}x{size[1]}", ending)
+    """A few pictures of a wood (host/frames) in this format, ready to be replayed."""
+    return _existing(environment.build("hil/frames", f"{size[0]}x{size[1]}", PROJECT_NAMES[fourcc]))
+
+
+def drive_folder():
+    """The pictures of a drive through a wood, 640 x 480 in YUYV."""
+    return _existing(environment.build("hil/frames/640x480/drive"))
+
+
+def _existing(folder):
     if not folder.exists():
         raise Skip(f"{folder} is not rendered")
     return folder

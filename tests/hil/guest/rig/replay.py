@@ -12,8 +12,13 @@ NO_TRACKS = "detect.track=false"
 
 def replayed_lists(fourcc, size):
     """boled's lists for the rendered pictures in this format."""
-    boled = Boled(f"replay:{frames.rendered_folder(fourcc, size)}", size, "source.pace=lockstep",
-                  NO_TRACKS, publish="jsonl:-", name="replay")
+    return replay(frames.rendered_folder(fourcc, size), size)
+
+
+def replay(folder, size):
+    """boled's lists for the pictures of a folder."""
+    boled = Boled(f"replay:{folder}", size, "source.pace=lockstep", NO_TRACKS, publish="jsonl:-",
+                  name="replay")
     expect(boled.wait(60), 0, "exit status of the replay")
     return [json.loads(line) for line in boled.stdout.since()]
 
