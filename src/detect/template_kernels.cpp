@@ -87,8 +87,10 @@ Values JoinedAbove(Values l, Values r) {
   const auto soft = [&](Values v) {
     return hn::Max(v, hn::ShiftRight<4>(hn::Mul(v, hn::Set(d, -11))));
   };
-  const auto joined = Joined(soft(l), soft(r), hn::Set(d, 35));
-  return hn::ShiftRight<5>(hn::Mul(joined, hn::Set(d, 13)));
+  const auto any_sign = Joined(soft(l), soft(r), hn::Set(d, 35));
+  const auto right_sign = Joined(l, r, hn::Set(d, 24));
+  return hn::Max(hn::ShiftRight<5>(hn::Mul(any_sign, hn::Set(d, 13))),
+                 hn::ShiftRight<3>(hn::Mul(right_sign, hn::Set(d, 5))));
 }
 
 void SumColumns(const ColumnSums& s) {
@@ -151,14 +153,13 @@ void sum_columns_plain(const ColumnSums& s) {
       int sum = 0, best = 0, foot = 0;
       for (int band = 0; band < s.last_foot; ++band) {
         const std::int16_t* at = s.responses + static_cast<std::ptrdiff_t>(band) * s.pitch + i;
-        int l = -sign * at[0], r = sign * at[s.across];
-        const bool above = band < s.horizon;
-        if (above) {
-          l = soft(l);
-          r = soft(r);
-        }
-        const int joined = ((l + r) >> 2) + (std::min(l, r) >> 1);
-        sum = std::max(0, sum + (above ? ((joined - 35) * 13) >> 5 : joined - 19));
+        const int l = -sign * at[0], r = sign * at[s.across];
+        const auto joined = [](int a, int b) { return ((a + b) >> 2) + (std::min(a, b) >> 1); };
+        int value = joined(l, r) - 19;
+        if (band < s.horizon)
+          value =
+              std::max(((joined(soft(l), soft(r)) - 35) * 13) >> 5, ((joined(l, r) - 24) * 5) >> 3);
+        sum = std::max(0, sum + value);
         if (band + 1 < s.first_foot || sum <= best) continue;
         best = sum;
         foot = band + 1;

@@ -67,7 +67,8 @@ Templates::Templates(const DetectorSetup& setup, int most_candidates)
     last = size.width;
     // The ground where a trunk of this angular width and a searched diameter can stand.
     const double s = std::sin(std::min(1.4, size.width / focal_) / 2);
-    const double nearest_range = std::max(search.diameter.low / (2 * s), search.range.low);
+    // Thinner trees nearer by are looked for, too, or they would be taken for searched ones beyond.
+    const double nearest_range = std::max(0.6 * search.diameter.low / (2 * s), search.range.low);
     const double down = setup.height / std::max(0.5 * nearest_range, nearest_range * (1 - s));
     size.first_foot = static_cast<int>(band_of_tangent(-kSlope));
     size.last_foot = static_cast<int>(std::ceil(band_of_tangent(1.15 * down + 0.05)));

@@ -31,8 +31,6 @@ FeatureReader::FeatureReader(const DetectorSetup& setup)
       last_band_(setup.panorama.rows / Bands::kRows),
       wraps_(setup.panorama.wraps()),
       focal_(setup.panorama.focal()),
-      horizon_(setup.panorama.horizon_row() + 0.5),
-      height_(setup.height),
       log_(1024) {
   for (int i = 0; i < 1024; ++i) log_[i] = std::log(static_cast<float>(i) / 4 + Bands::kBlackLevel);
 }
@@ -170,25 +168,14 @@ void FeatureReader::read(const Bands& bands, const PanoramaView& panorama, const
   values += F::kFootRows * F::kStrips;
 
   const auto f = static_cast<float>(focal_);
-  const auto horizon = static_cast<float>(horizon_);
-  const auto height = static_cast<float>(height_);
   const float w = shape.width();
-  const float s = std::sin(std::min(1.4F, w / f) / 2);
-  const float down = (shape.foot - horizon) / f;
-  const float distance = std::min(60.0F, height / std::max(down, 1e-3F));
-  const float diameter = 2 * distance * s / (1 - s);
   const float top = static_cast<float>(first_band * Bands::kRows);
   const float numbers[F::kNumbers] = {
       std::log(w * kReference / (20 * f)),
       std::log(w / 6),
-      std::clamp(down, -0.6F, 1.5F),
-      std::log(diameter / 0.4F),
-      std::log(distance / 4),
-      (diameter > 0.9F || diameter < 0.15F) ? 1.0F : 0.0F,
       spread,
       shape.dark ? 1.0F : -1.0F,
       evidence / 10,
-      (shape.foot - top) / (f * 0.8F),
       std::log(std::max(4.0F, shape.foot - top) / w),
       fit.contrast_left,
       fit.contrast_right,

@@ -9,13 +9,15 @@
 namespace bole {
 
 /// What the network is shown of a candidate: the picture about it in coordinates of its own shape,
-/// so that size, place, lean, light and polarity are taken out, and a few numbers.
+/// so that size, place, lean, light and polarity are taken out, and a few numbers. Where the trunk
+/// stands is kept from it: what a foot's row says is the range's posterior to judge, which knows
+/// how little it says where the ground is not level.
 struct TrunkFeatures {
   static constexpr int kHeights = 11;   ///< cells along the trunk, two of them below the foot
   static constexpr int kAcross = 12;    ///< cells across, out to one width beside it
   static constexpr int kFootRows = 16;  ///< fine rows about the foot
   static constexpr int kStrips = 3;     ///< of each: left of the trunk, its core, right of it
-  static constexpr int kNumbers = 25;
+  static constexpr int kNumbers = 20;
   static constexpr int kCount = kHeights * kAcross + kFootRows * kStrips + kNumbers;
   using Values = std::array<float, kCount>;
 };
@@ -39,7 +41,7 @@ class FeatureReader {
 
   int rows_, width_, last_band_;
   bool wraps_;
-  double focal_, horizon_, height_;
+  double focal_;
   std::vector<float> log_;  // of a quarter grey level
 };
 

@@ -9,10 +9,13 @@ namespace {
 constexpr float kWorthASecondLook = -3.0F;  // logit
 constexpr float kWorthOtherFeet = -4.0F;    // logit
 constexpr float kWorthAnswering = -3.5F;    // logit
+constexpr float kFarBetter = 2.0F;  // of two logits: the second look seldom turns them round
+constexpr float kSure = 4.0F;       // logit
+constexpr float kHopeless = -99;    // logit
 
 // The farther the search goes, the more trunks there are.
 int most_candidates(const Search& search) {
-  return static_cast<int>(std::clamp(140 + 27 * (search.range.high - 8), 140.0, 1000.0));
+  return static_cast<int>(std::clamp(250 + 27 * (search.range.high - 8), 250.0, 1100.0));
 }
 
 }  // namespace
@@ -25,6 +28,7 @@ TrunkFinder::TrunkFinder(const DetectorSetup& setup)
       templates_(setup, most_candidates(setup.search)),
       fitter_(setup),
       reader_(setup) {
+  sights_.reserve(most_candidates(setup.search));
   trunks_.reserve(3 * most_candidates(setup.search));
   kept_.reserve(3 * most_candidates(setup.search));
 }
@@ -34,53 +38,94 @@ std::span<const Candidate> TrunkFinder::candidates(const PanoramaView& panorama)
   return templates_.find(bands_);
 }
 
-void TrunkFinder::read(const PanoramaView& panorama, const TrunkShape& shape, const EdgeFit& fit,
-                       float evidence, TrunkFeatures::Values& out) const {
-  reader_.read(bands_, panorama, shape, fit, evidence, fitter_.first_band(shape.left, shape.right),
-               out);
+// Whether there is anything above the foot, and the widest row of cells about this outline lies
+// within the bands from top to bottom.
+bool TrunkFinder::readable(const TrunkShape& shape) const {
+  const float beside = 1.6F * shape.width() + 4;
+  const float bottom = static_cast<float>(bands_.count() * Bands::kRows);
+  const auto inside = [&](float row) {
+    const float middle = shape.centre() + shape.slope() * (row - shape.foot);
+    return middle - beside > static_cast<float>(-bands_.margin()) &&
+           middle + beside < static_cast<float>(bands_.width() + bands_.margin());
+  };
+  return shape.width() > 0 && shape.foot >= 2 * Bands::kRows && inside(0) && inside(bottom);
 }
 
+bool TrunkFinder::read(const PanoramaView& panorama, const TrunkShape& shape, const EdgeFit& fit,
+                       float evidence, TrunkFeatures::Values& out) const {
+  if (!readable(shape)) return false;
+  reader_.read(bands_, panorama, shape, fit, evidence, fitter_.first_band(shape.left, shape.right),
+               out);
+  return true;
+}
+
+// Most candidates about a trunk are that trunk seen amiss: those that look best go first, and what
+// one of them explains far better is not looked at again.
 std::span<Trunk> TrunkFinder::find(const PanoramaView& panorama) {
-  trunks_.clear();
+  sights_.clear();
   for (const Candidate& candidate : candidates(panorama)) {
-    Trunk trunk;
-    if (!fit(candidate, trunk.shape, trunk.fit)) continue;
-    if (look(panorama, trunk, candidate.evidence) < kWorthOtherFeet) continue;
-    std::array<float, EdgeFitter::kOtherFeet> feet;
-    const int count = other_feet(trunk.shape, feet);
-    for (int i = 0; i < count; ++i) {
-      Trunk other = trunk;
-      other.shape = ended_at(trunk.shape, feet[i]);
-      look(panorama, other, candidate.evidence);
-    }
+    Sight sight;
+    sight.evidence = candidate.evidence;
+    if (!fit(candidate, sight.trunk.shape, sight.trunk.fit)) continue;
+    judge(panorama, sight);
+    if (sight.judgement.logit >= kWorthOtherFeet) sights_.push_back(sight);
+  }
+  std::sort(sights_.begin(), sights_.end(), [](const Sight& a, const Sight& b) {
+    return a.judgement.logit != b.judgement.logit ? a.judgement.logit > b.judgement.logit
+                                                  : a.trunk.shape.left < b.trunk.shape.left;
+  });
+  trunks_.clear();
+  for (const Sight& sight : sights_) {
+    if (explained(sight.trunk.shape, sight.judgement.logit + kFarBetter)) continue;
+    look_again(panorama, sight);
+    if (!explained(sight.trunk.shape, kSure)) look_at_other_feet(panorama, sight);
   }
   suppress();
   return kept_;
 }
 
-// Judges a trunk; returns the logit at first sight.
-float TrunkFinder::look(const PanoramaView& panorama, Trunk trunk, float evidence) {
+void TrunkFinder::judge(const PanoramaView& panorama, Sight& sight) const {
   TrunkFeatures::Values features;
-  read(panorama, trunk.shape, trunk.fit, evidence, features);
-  Judgement judgement = judge(features);
-  const float at_first_sight = judgement.logit;
-  if (at_first_sight < kWorthASecondLook) return at_first_sight;
+  const bool seen = read(panorama, sight.trunk.shape, sight.trunk.fit, sight.evidence, features);
+  sight.judgement = seen ? bole::judge(features) : Judgement{.logit = kHopeless};
+}
 
-  // A second look from where the first one says that the trunk is.
-  trunk.shape = corrected(trunk.shape, judgement, focal_);
+// A second look, from where the first one says that the trunk is.
+void TrunkFinder::look_again(const PanoramaView& panorama, Sight sight) {
+  if (sight.judgement.logit < kWorthASecondLook) return;
+  Trunk& trunk = sight.trunk;
+  trunk.shape = corrected(trunk.shape, sight.judgement, focal_);
+  if (!readable(trunk.shape)) return;
   refine(trunk.shape, trunk.fit);
-  read(panorama, trunk.shape, trunk.fit, evidence, features);
-  judgement = judge(features);
-  if (judgement.logit < kWorthAnswering || trunks_.size() == trunks_.capacity())
-    return at_first_sight;
+  judge(panorama, sight);
+  const Judgement& judgement = sight.judgement;
+  if (judgement.logit < kWorthAnswering || trunks_.size() == trunks_.capacity()) return;
   const float width = trunk.shape.width(), unit = foot_unit(trunk.shape, focal_);
   trunk.shape = corrected(trunk.shape, judgement, focal_);
-  trunk.probability = 1 / (1 + std::exp(-judgement.logit));
+  trunk.logit = judgement.logit;
   trunk.centre_sigma = width * std::exp(judgement.log_sigma[0]);
   trunk.width_sigma = std::exp(judgement.log_sigma[1]);
   trunk.foot_sigma = unit * std::exp(judgement.log_sigma[2]);
   trunks_.push_back(trunk);
-  return at_first_sight;
+}
+
+void TrunkFinder::look_at_other_feet(const PanoramaView& panorama, const Sight& sight) {
+  std::array<float, EdgeFitter::kOtherFeet> feet;
+  const int count = other_feet(sight.trunk.shape, feet);
+  for (int i = 0; i < count; ++i) {
+    Sight other = sight;
+    other.trunk.shape = ended_at(sight.trunk.shape, feet[i]);
+    judge(panorama, other);
+    if (!explained(other.trunk.shape, other.judgement.logit + kFarBetter))
+      look_again(panorama, other);
+  }
+}
+
+// Whether a trunk of a higher logit explains the same pixels.
+bool TrunkFinder::explained(const TrunkShape& shape, float logit) const {
+  return std::any_of(trunks_.begin(), trunks_.end(), [&](const Trunk& trunk) {
+    return trunk.logit > logit && same_pixels(trunk.shape, shape);
+  });
 }
 
 // Whether two outlines explain the same picture: one covers most of the other, or they take one
@@ -99,8 +144,7 @@ bool TrunkFinder::same_pixels(const TrunkShape& a, const TrunkShape& b) const {
 
 void TrunkFinder::suppress() {
   std::sort(trunks_.begin(), trunks_.end(), [](const Trunk& a, const Trunk& b) {
-    return a.probability != b.probability ? a.probability > b.probability
-                                          : a.shape.left < b.shape.left;
+    return a.logit != b.logit ? a.logit > b.logit : a.shape.left < b.shape.left;
   });
   kept_.clear();
   for (const Trunk& trunk : trunks_) {

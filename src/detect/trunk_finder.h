@@ -14,7 +14,7 @@ namespace bole {
 struct Trunk {
   TrunkShape shape;
   EdgeFit fit;
-  float probability = 0;
+  float logit = 0;         ///< of the probability that this is a trunk
   float centre_sigma = 0;  ///< columns
   float width_sigma = 0;   ///< of the logarithm
   float foot_sigma = 0;    ///< rows
@@ -37,11 +37,23 @@ class TrunkFinder {
     return fitter_.other_feet(bands_, shape, feet);
   }
   void refine(TrunkShape& shape, EdgeFit& fit) const { fitter_.refine(bands_, shape, fit); }
-  void read(const PanoramaView& panorama, const TrunkShape& shape, const EdgeFit& fit,
-            float evidence, TrunkFeatures::Values& out) const;
+  /// False, and nothing read, when the outline leads farther out of the panorama than Bands
+  /// goes.
+  [[nodiscard]] bool read(const PanoramaView& panorama, const TrunkShape& shape, const EdgeFit& fit,
+                          float evidence, TrunkFeatures::Values& out) const;
 
  private:
-  float look(const PanoramaView& panorama, Trunk trunk, float evidence);
+  bool readable(const TrunkShape& shape) const;
+  // A trunk as it is first met.
+  struct Sight {
+    Trunk trunk;
+    float evidence = 0;
+    Judgement judgement;
+  };
+  void judge(const PanoramaView& panorama, Sight& sight) const;
+  void look_again(const PanoramaView& panorama, Sight sight);
+  void look_at_other_feet(const PanoramaView& panorama, const Sight& sight);
+  bool explained(const TrunkShape& shape, float logit) const;
   void suppress();
   bool same_pixels(const TrunkShape& a, const TrunkShape& b) const;
 
@@ -52,6 +64,7 @@ class TrunkFinder {
   Templates templates_;
   EdgeFitter fitter_;
   FeatureReader reader_;
+  std::vector<Sight> sights_;
   std::vector<Trunk> trunks_, kept_;
 };
 

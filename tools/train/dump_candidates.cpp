@@ -18,7 +18,7 @@ namespace bole::train {
 namespace {
 
 constexpr int kHead = 6;
-constexpr double kMostNegatives = 150;  // a frame; the others are drawn from, and weigh more
+constexpr double kMostNegatives = 200;  // a frame; the others are drawn from, and weigh more
 constexpr double kReferenceFocal = 1440 / 6.283185307;
 
 struct Label {
@@ -26,6 +26,13 @@ struct Label {
   float centre_shift = 0, log_width = 0, foot_shift = 0;
   int which = -1;
 };
+
+// What the detector takes the panorama for: in some frames the horizon is not where it thinks, as
+// on a slope or with a wrong attitude, so that it learns to trust what a trunk looks like.
+PanoramaGeometry misjudged(PanoramaGeometry geometry, simulate::Random& random) {
+  if (random.chance(0.4F)) geometry.top_tangent += 0.08F * random.normal();
+  return geometry;
+}
 
 class Dump {
  public:
@@ -38,7 +45,7 @@ class Dump {
         scale_(focal_ / kReferenceFocal),
         // Near trunks only, or far ones as well.
         search_(random_.chance(0.4F) ? Search{{1, 40}, {0.1, 1.2}} : Search{}),
-        finder_({frame.geometry, frame.seen_map(), frame.height, search_}),
+        finder_({misjudged(frame.geometry, random_), frame.seen_map(), frame.height, search_}),
         found_(frame.trunks.size()) {}
 
   void run() {
@@ -115,7 +122,7 @@ class Dump {
     const Label here = label(shape);
     if (here.trunk < 0) return;
     TrunkFeatures::Values features;
-    finder_.read(frame_.view(), shape, fit, evidence, features);
+    if (!finder_.read(frame_.view(), shape, fit, evidence, features)) return;
     const float head[kHead] = {static_cast<float>(number_),
                                here.trunk,
                                here.centre_shift,

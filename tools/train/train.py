@@ -1,29 +1,32 @@
 #!/usr/bin/env python3
 """Trains the detector's network on what dump_candidates wrote.
 
-usage: train.py --out src/detect/weights.inc DUMP...
+usage: train.py --out src/detect/weights.inc [DUMP...]
 
-One hidden layer of 48 leaky units over the standardised features, and seven outputs: the logit of
+Without a dump it writes a network that knows nothing, for changed features to be built with.
+
+One hidden layer of 96 leaky units over the standardised features, and seven outputs: the logit of
 'this is a trunk', the shifts of middle, log width and foot that lead to it, and the logarithms of
 their standard deviations. Every sample is shown mirrored, too. Gaussian noise on the inputs keeps
 the network from leaning on details that only the simulator has; the last epochs, without noise, teach
-the shifts and their deviations alone. Every eighth frame is held out and only reported on. The same dumps give the same weights.
+the shifts and their deviations alone. Every eighth frame is held out and only reported on. The same
+dumps give the same weights.
 """
 import argparse
 
 import numpy as np
 
 HEAD = 6  # frame, label, three shifts, weight: see dump_candidates.cpp
-HEIGHTS, ACROSS, FOOT_ROWS, STRIPS, NUMBERS = 11, 12, 16, 3, 25  # see trunk_features.h
+HEIGHTS, ACROSS, FOOT_ROWS, STRIPS, NUMBERS = 11, 12, 16, 3, 20  # see trunk_features.h
 GRID = HEIGHTS * ACROSS
 FEATURES = GRID + FOOT_ROWS * STRIPS + NUMBERS
-LEFT_RIGHT_NUMBERS = [(11, 12), (14, 15), (19, 20)]  # that change places in a mirror
-SIDEWAYS_NUMBERS = [24]  # that change sign in a mirror
-POLARITY_NUMBER = 7  # 1 dark, -1 bright
-HIDDEN, OUTPUTS, LEAK = 48, 7, 0.05
+LEFT_RIGHT_NUMBERS = [(6, 7), (9, 10), (14, 15)]  # that change places in a mirror
+SIDEWAYS_NUMBERS = [19]  # that change sign in a mirror
+POLARITY_NUMBER = 3  # 1 dark, -1 bright
+HIDDEN, OUTPUTS, LEAK = 96, 7, 0.05
 LIMIT = 4.0  # of a standardised feature
 BRIGHT_WEIGHT = 2.5  # of bright trunks: they are the fewer, but as good to run into
-EPOCHS, LAST_EPOCHS, BATCH, RATE, DECAY, NOISE = 24, 5, 512, 3e-3, 1e-4, 0.3
+EPOCHS, LAST_EPOCHS, BATCH, RATE, DECAY, NOISE = 20, 5, 512, 3e-3, 1e-4, 0.3
 
 
 def load(paths):
@@ -147,8 +150,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", required=True)
-    parser.add_argument("dumps", nargs="+")
+    parser.add_argument("dumps", nargs="*")
     arguments = parser.parse_args()
+    if not arguments.dumps:
+        write(Network(np.zeros((1, FEATURES), np.float32), np.random.default_rng(0)), arguments.out)
+        return
     head, x = load(arguments.dumps)
     held_out = head[:, 0].astype(int) % 8 == 0
     twins = mirrored(head[~held_out], x[~held_out])

@@ -1,0 +1,119 @@
+#include "detect/range_posterior.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace bole {
+namespace {
+
+constexpr double kTypicalDiameter = 0.3;  // metres, median
+constexpr double kDiameterSpread = 0.5;   // standard deviation of the logarithm
+constexpr double kVisibility = 30;        // metres that a tree is seen through others, mean
+constexpr double kAttitudeSigma = 0.003;  // tangent
+constexpr double kGroundSigma = 0.015;    // metres, of even ground
+constexpr double kRoughShare = 0.1;       // of trees whose foot is not where even ground has it
+constexpr double kRoughSigma = 0.12;      // tangent
+constexpr double kNearest = 0.5, kFarthest = 100;  // metres
+constexpr double kStep = 0.5;  // of the even ground's points, standard deviations
+constexpr double kRangeTolerance = 1.1, kDiameterTolerance = 1.3;  // lists reach so far beyond
+
+double normal(double x, double sigma) { return std::exp(-0.5 * (x / sigma) * (x / sigma)) / sigma; }
+
+// Density over the logarithm of the range of trees that span 2 asin(s), but for a factor.
+double prior(double log_range, double s) {
+  const double range = std::exp(log_range);
+  const double size = std::log(2 * range * s / kTypicalDiameter) / kDiameterSpread;
+  return range * std::exp(-0.5 * size * size - range / kVisibility);
+}
+
+}  // namespace
+
+RangePosterior::RangePosterior(double height, const Search& search)
+    : height_(height), search_(search) {
+  for (int i = 0; i < kRoughSteps; ++i) {
+    const double part = (i + 0.5) / kRoughSteps;
+    rough_log_range_[i] = std::log(kNearest) + part * std::log(kFarthest / kNearest);
+    rough_down_[i] = height / std::exp(rough_log_range_[i]);
+  }
+}
+
+bool RangePosterior::is_searched(double range, double diameter) const {
+  return range >= search_.range.low / kRangeTolerance &&
+         range <= search_.range.high * kRangeTolerance &&
+         diameter >= search_.diameter.low / kDiameterTolerance &&
+         diameter <= search_.diameter.high * kDiameterTolerance;
+}
+
+RangePosterior::Points RangePosterior::points(const TrunkSight& sight) const {
+  const double s = std::sin(sight.angular_width / 2);
+  const double uneven = kGroundSigma * std::max(0.0, sight.down) / height_;
+  const double sigma = std::hypot(sight.down_sigma, kAttitudeSigma, uneven);
+  Points points;
+  for (int i = 0; i < kEvenSteps; ++i) {
+    const double off = kStep * (i - kEvenSteps / 2);
+    const double down = std::max(sight.down + off * sigma, 1e-4);
+    points.log_range[i] = std::log(height_ / (down * (1 - s)));
+    const bool real = sight.down + off * sigma > 1e-4;
+    // d log(range) = d down / down; the normal density's sigma cancels the step's.
+    points.weight[i] = real ? (1 - kRoughShare) * std::exp(-0.5 * off * off) * kStep / down *
+                                  prior(points.log_range[i], s)
+                            : 0;
+  }
+  const double step = std::log(kFarthest / kNearest) / kRoughSteps;
+  const double rough_sigma = std::hypot(kRoughSigma, sight.down_sigma);
+  for (int i = 0; i < kRoughSteps; ++i) {
+    points.log_range[kEvenSteps + i] = rough_log_range_[i];
+    points.weight[kEvenSteps + i] = kRoughShare * step *
+                                    normal(sight.down - rough_down_[i] / (1 - s), rough_sigma) *
+                                    prior(rough_log_range_[i], s);
+  }
+  return points;
+}
+
+double RangePosterior::log_likelihood(const TrunkSight& sight) const {
+  const Points p = points(sight);
+  return std::log(std::accumulate(p.weight.begin(), p.weight.end(), 1e-30));
+}
+
+RangeEstimate RangePosterior::estimate(const TrunkSight& sight) const {
+  const Points everywhere = points(sight);
+  const double s = std::sin(sight.angular_width / 2);
+  const double all = std::accumulate(everywhere.weight.begin(), everywhere.weight.end(), 1e-30);
+  Points p = everywhere;  // then only what is searched
+  for (int i = 0; i < kSteps; ++i) {
+    const double range = std::exp(p.log_range[i]);
+    if (!is_searched(range, 2 * range * s)) p.weight[i] = 0;
+  }
+  const double even = std::accumulate(p.weight.begin(), p.weight.begin() + kEvenSteps, 0.0);
+  const double searched = std::accumulate(p.weight.begin() + kEvenSteps, p.weight.end(), even);
+  if (searched <= 0) return {};
+
+  // The mean over what most likely is the case; the deviation about it over all that may be.
+  const int last = even > 0.5 * searched ? kEvenSteps : kSteps;
+  const double mass = even > 0.5 * searched ? even : searched;
+  const double mean =
+      std::inner_product(p.weight.begin(), p.weight.begin() + last, p.log_range.begin(), 0.0) /
+      mass;
+  const double range = std::exp(mean);
+  return {.range = range,
+          .sigma = range * half_of_95_percent(everywhere, mean, all),
+          .searched = std::min(1.0, searched / all)};
+}
+
+// Half the deviation from `mean` within which 95 % of the mass lies: the standard deviation of a
+// normal distribution, and of one with far tails what its bulk has.
+double RangePosterior::half_of_95_percent(const Points& p, double mean, double mass) {
+  std::array<std::pair<double, double>, kSteps> by_deviation;  // deviation, weight
+  for (int i = 0; i < kSteps; ++i) by_deviation[i] = {std::abs(p.log_range[i] - mean), p.weight[i]};
+  std::sort(by_deviation.begin(), by_deviation.end());
+  double within = 0;
+  for (const auto& [deviation, weight] : by_deviation) {
+    within += weight;
+    if (within >= 0.95 * mass) return deviation / 2;
+  }
+  return by_deviation.back().first / 2;
+}
+
+}  // namespace bole
