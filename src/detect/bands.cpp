@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "detect/band_kernels.h"
+
 namespace bole {
 
 Bands::Bands(const DetectorSetup& setup, int margin)
@@ -10,13 +12,15 @@ Bands::Bands(const DetectorSetup& setup, int margin)
       width_(setup.panorama.width),
       margin_(margin),
       pitch_(width_ + 2 * margin + 1),
+      coarse_pitch_(pitch_ / kCoarse + 1),
       wraps_(setup.panorama.wraps()),
       log_(255 * kRows + 1),
       row_sum_(width_),
       sums_(static_cast<std::size_t>(count_) * pitch_),
+      coarse_(static_cast<std::size_t>(count_) * coarse_pitch_),
       seen_(static_cast<std::size_t>(count_) * pitch_) {
   for (int sum = 0; sum < static_cast<int>(log_.size()); ++sum)
-    log_[sum] = static_cast<std::int16_t>(
+    log_[sum] = static_cast<std::uint16_t>(
         std::lround(kScale * std::log(static_cast<double>(sum) / kRows + kBlackLevel)));
 
   for (int band = 0; band < count_; ++band) {
@@ -38,30 +42,42 @@ void Bands::compute(const PanoramaView& panorama) {
   for (int band = 0; band < count_; ++band) {
     const std::uint8_t* rows[kRows];
     for (int i = 0; i < kRows; ++i) rows[i] = panorama.row(band * kRows + i);
-    for (int x = 0; x < width_; ++x)
-      row_sum_[x] = static_cast<std::uint16_t>(rows[0][x] + rows[1][x] + rows[2][x] + rows[3][x]);
-
-    std::int32_t* sums = sums_.data() + static_cast<std::size_t>(band) * pitch_;
-    std::int32_t total = 0;
-    int i = 0;
-    const auto add = [&](int x) {
-      sums[i++] = total;
-      total += log_[row_sum_[x]];
-    };
-    if (wraps_) {
-      int x = (width_ - margin_ % width_) % width_;
-      for (int left = width_ + 2 * margin_; left > 0;) {
-        const int run = std::min(left, width_ - x);
-        for (int end = x + run; x < end; ++x) add(x);
-        left -= run;
-        x = 0;
-      }
-    } else {
-      for (int x = 0; x < margin_; ++x) add(0);
-      for (int x = 0; x < width_; ++x) add(x);
-      for (int x = 0; x < margin_; ++x) add(width_ - 1);
+    sum_four_rows(rows, width_, row_sum_.data());
+    std::uint16_t* sums = sums_.data() + static_cast<std::size_t>(band) * pitch_ + margin_;
+    std::uint16_t total = 0;
+    for (int x = 0; x < width_; ++x) {
+      sums[x] = total;
+      total = static_cast<std::uint16_t>(total + log_[row_sum_[x]]);
     }
-    sums[i] = total;
+    sums[width_] = total;
+    extend(sums);
+
+    const std::uint16_t* at = sums - margin_;
+    std::int32_t* coarse = coarse_.data() + static_cast<std::size_t>(band) * coarse_pitch_;
+    coarse[0] = at[0];
+    for (int k = 1; k * kCoarse < pitch_; ++k)
+      coarse[k] =
+          coarse[k - 1] + static_cast<std::uint16_t>(at[k * kCoarse] - at[(k - 1) * kCoarse]);
+  }
+}
+
+// Continues a band's sums into its margins.
+void Bands::extend(std::uint16_t* sums) const {
+  if (wraps_) {
+    const std::uint16_t turn = sums[width_];
+    for (int done = 0; done < margin_; done += width_) {
+      const int n = std::min(width_, margin_ - done);
+      std::uint16_t* left = sums - done - n;
+      shift_sums(left + width_, n, static_cast<std::uint16_t>(-turn), left);
+      std::uint16_t* right = sums + width_ + 1 + done;
+      shift_sums(right - width_, n, turn, right);
+    }
+  } else {
+    const std::uint16_t left = log_[row_sum_[0]], right = log_[row_sum_[width_ - 1]];
+    for (int i = 0; i < margin_; ++i) {
+      sums[-i - 1] = static_cast<std::uint16_t>(sums[-i] - left);
+      sums[width_ + i + 1] = static_cast<std::uint16_t>(sums[width_ + i] + right);
+    }
   }
 }
 

@@ -1,5 +1,7 @@
 #include "detect/dense_layer.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "detect/dense_layer.cpp"
 #include <hwy/foreach_target.h>
@@ -11,8 +13,8 @@ namespace bole::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // Three vectors of sums at a time: enough of them to hide an addition's latency.
-void AddDense(const float* HWY_RESTRICT in, int count, const float* HWY_RESTRICT weights, int units,
-              float* HWY_RESTRICT sums) {
+void AddWide(const float* HWY_RESTRICT in, int count, const float* HWY_RESTRICT weights, int units,
+             float* HWY_RESTRICT sums) {
   const hn::CappedTag<float, 16> d;
   const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
   for (std::ptrdiff_t j = 0; j < units; j += 3 * lanes) {
@@ -31,6 +33,32 @@ void AddDense(const float* HWY_RESTRICT in, int count, const float* HWY_RESTRICT
   }
 }
 
+void AddDense(const float* HWY_RESTRICT in, int count, const float* HWY_RESTRICT weights, int units,
+              float* HWY_RESTRICT sums) {
+  if (units != 8) return AddWide(in, count, weights, units, sums);
+  const hn::CappedTag<float, 8> d;
+  for (int j = 0; j < units; j += static_cast<int>(hn::Lanes(d))) {
+    auto sum = hn::LoadU(d, sums + j);
+    for (int i = 0; i < count; ++i)
+      sum = hn::Add(sum, hn::Mul(hn::Set(d, in[i]), hn::LoadU(d, weights + i * units + j)));
+    hn::StoreU(sum, d, sums + j);
+  }
+}
+
+// The last vector ends where the numbers do, and may overlap the one before.
+void Standardise(const float* HWY_RESTRICT in, int count, const float* HWY_RESTRICT mean,
+                 const float* HWY_RESTRICT scale, float limit, float* HWY_RESTRICT out) {
+  const hn::CappedTag<float, 16> d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const auto most = hn::Set(d, limit);
+  for (int start = 0; start < count; start += lanes) {
+    const int i = std::min(start, count - lanes);
+    const auto value =
+        hn::Mul(hn::Sub(hn::LoadU(d, in + i), hn::LoadU(d, mean + i)), hn::LoadU(d, scale + i));
+    hn::StoreU(hn::Min(most, hn::Max(hn::Neg(most), value)), d, out + i);
+  }
+}
+
 }  // namespace bole::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -38,6 +66,7 @@ HWY_AFTER_NAMESPACE();
 namespace bole {
 
 HWY_EXPORT(AddDense);
+HWY_EXPORT(Standardise);
 
 void add_dense(const float* in, int count, const float* weights, int units, float* sums) {
   HWY_DYNAMIC_DISPATCH(AddDense)(in, count, weights, units, sums);
@@ -46,6 +75,16 @@ void add_dense(const float* in, int count, const float* weights, int units, floa
 void add_dense_plain(const float* in, int count, const float* weights, int units, float* sums) {
   for (int i = 0; i < count; ++i)
     for (int j = 0; j < units; ++j) sums[j] += in[i] * weights[i * units + j];
+}
+
+void standardise(const float* in, int count, const float* mean, const float* scale, float limit,
+                 float* out) {
+  HWY_DYNAMIC_DISPATCH(Standardise)(in, count, mean, scale, limit, out);
+}
+
+void standardise_plain(const float* in, int count, const float* mean, const float* scale,
+                       float limit, float* out) {
+  for (int i = 0; i < count; ++i) out[i] = std::clamp((in[i] - mean[i]) * scale[i], -limit, limit);
 }
 
 }  // namespace bole

@@ -1,52 +1,273 @@
 #include "detect/edge_kernels.h"
 
 #include <algorithm>
+#include <cstdlib>
 
+// Vectors of scalable length are left out: they cannot stand in arrays.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "detect/edge_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#ifndef BOLE_DETECT_EDGE_KERNELS_ONCE
+#define BOLE_DETECT_EDGE_KERNELS_ONCE
+namespace bole {
+namespace {
+
+// What is added before a truncation, so that it rounds to the nearest whole number.
+constexpr float kFar = 16384;
+
+// Columns nearest to a line, band by band.
+struct NearestColumns {
+  alignas(64) std::int32_t at[kMostEdgeBands];
+};
+
+// Peaks of the bands' responses about a line.
+struct Peaks {
+  alignas(64) std::int16_t height[kMostEdgeBands];  // 0: none
+  alignas(64) std::int16_t place[kMostEdgeBands];   // columns from the first one looked at
+  alignas(64) std::int16_t fall[kMostEdgeBands];    // of the response, from before to after it
+  alignas(64) std::int16_t bend[kMostEdgeBands];    // of the response at it
+};
+
+std::int16_t bend_at(const EdgeBands& bands, int band, int column) {
+  const std::uint16_t* at = bands.sums + band * bands.pitch + column;
+  return static_cast<std::int16_t>(at[bands.flank] - 2 * at[0] + at[-bands.flank]);
+}
+
+int whole_groups(int count) { return (count + kEdgeLanes - 1) / kEdgeLanes * kEdgeLanes; }
+
+// The sum of kEdgeLanes numbers, in halves.
+float sum_of(float* lanes) {
+  for (int half = kEdgeLanes / 2; half > 0; half /= 2)
+    for (int i = 0; i < half; ++i) lanes[i] += lanes[i + half];
+  return lanes[0];
+}
+
+}  // namespace
+}  // namespace bole
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace bole::HWY_NAMESPACE {
 
+#if HWY_TARGET == HWY_SCALAR  // a processor without vectors
+
+void PlaceEdge(const EdgeBands& bands, EdgeLine line, int sign, int least, float strongest,
+               EdgePlaces& places) {
+  place_edge_plain(bands, line, sign, least, strongest, places);
+}
+
+LineSums SumPlaces(const EdgePlaces& places, EdgeLine line, float tail) {
+  return sum_places_plain(places, line, tail);
+}
+
+EdgeResponses RespondAlong(const EdgeBands& bands, EdgeLine left, EdgeLine right, float full) {
+  return respond_along_plain(bands, left, right, full);
+}
+
+#else
+
 namespace hn = hwy::HWY_NAMESPACE;
 
-void SumEdges(const EdgeWindow& w, EdgeTotals& totals) {
-  const hn::CappedTag<std::int32_t, 16> d;
-  const hn::RebindToFloat<decltype(d)> df;
-  const hn::Rebind<std::int16_t, decltype(d)> d16;
-  const hn::CappedTag<std::int16_t, EdgeWindow::kPlaces> dp;
-  const int lanes = static_cast<int>(hn::Lanes(d)), places = static_cast<int>(hn::Lanes(dp));
-  const auto scale = hn::Set(df, static_cast<float>(w.sign) / static_cast<float>(w.flank));
-  const auto limit = hn::Set(df, static_cast<float>(w.limit));
-  HWY_ALIGN std::int16_t responses[EdgeWindow::kColumns];
-  for (auto& total : totals) total.fill(0);
-  const std::int32_t* sums = w.sums;
-  for (int band = 0; band < w.bands; ++band, sums += w.pitch) {
-    for (int i = 0; i < EdgeWindow::kColumns; i += lanes) {
-      const auto middle = hn::LoadU(d, sums + i);
-      const auto bend =
-          hn::Sub(hn::Add(hn::LoadU(d, sums + i + w.flank), hn::LoadU(d, sums + i - w.flank)),
-                  hn::Add(middle, middle));
-      const auto response = hn::Mul(hn::ConvertTo(df, bend), scale);
-      const auto clipped = hn::Min(limit, hn::Max(hn::Neg(limit), response));
-      auto value = hn::DemoteTo(d16, hn::ConvertTo(d, clipped));
-      if (band < w.horizon) {
-        value = hn::Max(value, hn::ShiftRight<4>(hn::Mul(value, hn::Set(d16, -11))));
-      }
-      hn::StoreU(value, d16, responses + i);
-    }
-    const auto& starts = (*w.starts)[band];
-    for (int s = 0; s < EdgeWindow::kSlopes; ++s) {
-      std::int16_t* total = totals[s].data();
-      const std::int16_t* from = responses + starts[s];
-      for (int i = 0; i < EdgeWindow::kPlaces; i += places) {
-        hn::StoreU(hn::Add(hn::LoadU(dp, total + i), hn::LoadU(dp, from + i)), dp, total + i);
-      }
-    }
+using Floats = hn::CappedTag<float, kEdgeLanes>;
+using Ints = hn::RebindToSigned<Floats>;
+using Shorts = hn::Rebind<std::int16_t, Floats>;
+using Vector = hn::Vec<Floats>;
+constexpr int kLanes = static_cast<int>(hn::MaxLanes(Floats()));
+constexpr int kParts = kEdgeLanes / kLanes;
+
+// kEdgeLanes sums side by side, in as many vectors as it takes.
+struct Sum {
+  Vector parts[kParts];
+  HWY_INLINE Sum() {
+    for (Vector& part : parts) part = hn::Zero(Floats());
+  }
+  HWY_INLINE void Add(int part, Vector value) { parts[part] = hn::Add(parts[part], value); }
+  HWY_INLINE float Total() const {
+    alignas(64) float lanes[kEdgeLanes];
+    for (int p = 0; p < kParts; ++p) hn::Store(parts[p], Floats(), lanes + p * kLanes);
+    return sum_of(lanes);
+  }
+};
+
+HWY_INLINE Vector Rows(const EdgeBands& bands, int band) {
+  const Floats d;
+  return hn::Add(hn::Set(d, bands.first_row),
+                 hn::Mul(hn::Set(d, bands.row_step), hn::Iota(d, static_cast<float>(band))));
+}
+
+HWY_INLINE Vector LoadShorts(const std::int16_t* from) {
+  return hn::ConvertTo(Floats(), hn::PromoteTo(Ints(), hn::Load(Shorts(), from)));
+}
+
+HWY_INLINE void Follow(const EdgeBands& bands, EdgeLine line, NearestColumns& columns) {
+  const Floats d;
+  for (int band = 0; band < bands.count; band += kLanes) {
+    const auto column = hn::Add(hn::Mul(Rows(bands, band), hn::Set(d, line.slope)),
+                                hn::Set(d, line.column + (kFar + 0.5F)));
+    hn::Store(
+        hn::Sub(hn::ConvertTo(Ints(), column), hn::Set(Ints(), static_cast<std::int32_t>(kFar))),
+        Ints(), columns.at + band);
   }
 }
+
+using Eight = hn::FixedTag<std::int16_t, 8>;
+using EightValues = hn::Vec<Eight>;
+
+// Rows become columns: three times every row is interleaved with the one four after it.
+HWY_INLINE void Transpose(EightValues (&rows)[8]) {
+  const Eight d;
+  for (int round = 0; round < 3; ++round) {
+    EightValues mixed[8];
+    for (int i = 0; i < 4; ++i) {
+      mixed[2 * i] = hn::InterleaveLower(d, rows[i], rows[i + 4]);
+      mixed[2 * i + 1] = hn::InterleaveUpper(d, rows[i], rows[i + 4]);
+    }
+    for (int i = 0; i < 8; ++i) rows[i] = mixed[i];
+  }
+}
+
+// The peaks of eight bands, from responses at eight columns (the last one is not looked at).
+HWY_INLINE void FindPeaks(const EightValues (&responses)[8], int least, int first, Peaks& peaks) {
+  const Eight d;
+  constexpr int kLast = 2 * EdgePlaces::kReach;
+  auto height = responses[0], place = hn::Zero(d), before = hn::Zero(d), after = hn::Zero(d);
+  for (int o = 1; o <= kLast; ++o) {
+    const auto higher = hn::Gt(responses[o], height);
+    height = hn::Max(height, responses[o]);
+    place = hn::IfThenElse(higher, hn::Set(d, static_cast<std::int16_t>(o)), place);
+    before = hn::IfThenElse(higher, responses[o - 1], before);
+    after = hn::IfThenElse(higher, responses[o + 1], after);
+  }
+  const auto inside =
+      hn::And(hn::Gt(place, hn::Zero(d)), hn::Lt(place, hn::Set(d, std::int16_t{kLast})));
+  const auto good =
+      hn::And(inside, hn::Gt(height, hn::Set(d, static_cast<std::int16_t>(least - 1))));
+  hn::Store(hn::IfThenElseZero(good, height), d, peaks.height + first);
+  hn::Store(place, d, peaks.place + first);
+  hn::Store(hn::Sub(before, after), d, peaks.fall + first);
+  hn::Store(hn::Sub(hn::Add(before, after), hn::Add(height, height)), d, peaks.bend + first);
+}
+
+void LookAlong(const EdgeBands& bands, const NearestColumns& columns, int sign, int least,
+               Peaks& peaks) {
+  const Eight d;
+  const hn::RebindToUnsigned<Eight> du;
+  const auto flip = hn::Set(d, static_cast<std::int16_t>(sign < 0 ? -1 : 0));
+  for (int first = 0; first < bands.count; first += 8) {
+    EightValues responses[8];
+    for (int k = 0; k < 8; ++k) {
+      const int band = std::min(first + k, bands.count - 1);
+      const std::uint16_t* at =
+          bands.sums + band * bands.pitch + columns.at[band] - EdgePlaces::kReach;
+      const auto middle = hn::LoadU(du, at);
+      const auto bend = hn::BitCast(d, hn::Sub(hn::Sub(hn::LoadU(du, at + bands.flank), middle),
+                                               hn::Sub(middle, hn::LoadU(du, at - bands.flank))));
+      responses[k] = band < bands.horizon ? hn::Abs(bend) : hn::Sub(hn::Xor(bend, flip), flip);
+    }
+    Transpose(responses);
+    FindPeaks(responses, least, first, peaks);
+  }
+  for (int band = bands.count; band < whole_groups(bands.count); ++band) peaks.height[band] = 0;
+}
+
+void PlaceEdge(const EdgeBands& bands, EdgeLine line, int sign, int least, float strongest,
+               EdgePlaces& places) {
+  const Floats d;
+  NearestColumns columns;
+  Follow(bands, line, columns);
+  Peaks peaks;
+  LookAlong(bands, columns, sign, least, peaks);
+  const auto share = hn::Set(d, 1 / static_cast<float>(bands.flank));
+  const auto half = hn::Set(d, 0.5F);
+  places.count = whole_groups(bands.count);
+  places.found = 0;
+  for (int band = 0; band < bands.count; band += kLanes) {
+    const auto height = LoadShorts(peaks.height + band), bend = LoadShorts(peaks.bend + band);
+    const auto there = hn::Gt(height, hn::Zero(d));
+    const auto shift = hn::Div(hn::Mul(half, LoadShorts(peaks.fall + band)), bend);
+    const auto bound = hn::Min(half, hn::Max(hn::Neg(half), shift));
+    const auto fine = hn::IfThenElseZero(hn::Lt(bend, hn::Zero(d)), bound);
+    const auto whole =
+        hn::Add(hn::ConvertTo(d, hn::Load(Ints(), columns.at + band)),
+                hn::Sub(LoadShorts(peaks.place + band), hn::Set(d, float{EdgePlaces::kReach})));
+    hn::Store(Rows(bands, band), d, places.row.data() + band);
+    hn::Store(hn::IfThenElseZero(there, hn::Add(whole, fine)), d, places.column.data() + band);
+    hn::Store(hn::Min(hn::Mul(height, share), hn::Set(d, strongest)), d,
+              places.weight.data() + band);
+    places.found += static_cast<int>(hn::CountTrue(d, there));
+  }
+  for (int band = (bands.count + kLanes - 1) / kLanes * kLanes; band < places.count; ++band)
+    places.row[band] = places.column[band] = places.weight[band] = 0;
+}
+
+LineSums SumPlaces(const EdgePlaces& places, EdgeLine line, float tail) {
+  const Floats d;
+  const auto one = hn::Set(d, 1.0F), shrink = hn::Set(d, 1 / tail);
+  Sum w, row, row_row, error, row_error, error_error;
+  for (int i = 0; i < places.count; i += kEdgeLanes) {
+    for (int p = 0; p < kParts; ++p) {
+      const int at = i + p * kLanes;
+      const auto r = hn::Load(d, places.row.data() + at);
+      const auto line_at = hn::Add(hn::Set(d, line.column), hn::Mul(hn::Set(d, line.slope), r));
+      const auto e = hn::Sub(hn::Load(d, places.column.data() + at), line_at);
+      const auto u = hn::Mul(e, shrink);
+      const auto rest = hn::Max(hn::Zero(d), hn::Sub(one, hn::Mul(u, u)));
+      const auto weight = hn::Mul(hn::Load(d, places.weight.data() + at), hn::Mul(rest, rest));
+      const auto weighted_row = hn::Mul(weight, r), weighted_error = hn::Mul(weight, e);
+      w.Add(p, weight);
+      row.Add(p, weighted_row);
+      row_row.Add(p, hn::Mul(weighted_row, r));
+      error.Add(p, weighted_error);
+      row_error.Add(p, hn::Mul(weighted_row, e));
+      error_error.Add(p, hn::Mul(weighted_error, e));
+    }
+  }
+  return {w.Total(),     row.Total(),       row_row.Total(),
+          error.Total(), row_error.Total(), error_error.Total()};
+}
+
+EdgeResponses RespondAlong(const EdgeBands& bands, EdgeLine left, EdgeLine right, float full) {
+  const Floats d;
+  const EdgeLine lines[2] = {left, right};
+  alignas(64) std::int16_t bends[2][kMostEdgeBands] = {};
+  for (int e = 0; e < 2; ++e) {
+    NearestColumns columns;
+    Follow(bands, lines[e], columns);
+    for (int band = 0; band < bands.count; ++band)
+      bends[e][band] = bend_at(bands, band, columns.at[band]);
+  }
+  const auto share = hn::Set(d, 1 / full), one = hn::Set(d, 1.0F);
+  const auto response = [&](const std::int16_t* bend, Vector factor) {
+    return hn::Min(one, hn::Max(hn::Neg(one), hn::Mul(LoadShorts(bend), factor)));
+  };
+  Sum below[2], above[2];
+  EdgeResponses result;
+  for (int i = 0; i < bands.count; i += kEdgeLanes) {
+    for (int p = 0; p < kParts; ++p) {
+      const int band = i + p * kLanes;
+      const Vector l = response(bends[0] + band, hn::Neg(share));
+      const Vector r = response(bends[1] + band, share);
+      const auto is_above = hn::Lt(hn::Iota(d, static_cast<float>(band)),
+                                   hn::Set(d, static_cast<float>(bands.horizon)));
+      below[0].Add(p, hn::IfThenZeroElse(is_above, l));
+      below[1].Add(p, hn::IfThenZeroElse(is_above, r));
+      above[0].Add(p, hn::IfThenElseZero(is_above, hn::Abs(l)));
+      above[1].Add(p, hn::IfThenElseZero(is_above, hn::Abs(r)));
+      const auto agree = hn::Gt(hn::Min(l, r), hn::Set(d, 0.25F));
+      const auto agree_above = hn::Gt(hn::Min(hn::Abs(l), hn::Abs(r)), hn::Set(d, 0.3F));
+      result.agree_below += static_cast<int>(hn::CountTrue(d, hn::AndNot(is_above, agree)));
+      result.agree_above += static_cast<int>(hn::CountTrue(d, hn::And(is_above, agree_above)));
+    }
+  }
+  result.below = {below[0].Total(), below[1].Total()};
+  result.above = {above[0].Total(), above[1].Total()};
+  return result;
+}
+
+#endif  // HWY_TARGET
 
 }  // namespace bole::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -54,29 +275,100 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace bole {
 
-HWY_EXPORT(SumEdges);
+HWY_EXPORT(PlaceEdge);
+HWY_EXPORT(SumPlaces);
+HWY_EXPORT(RespondAlong);
 
-void sum_edges(const EdgeWindow& window, EdgeTotals& totals) {
-  HWY_DYNAMIC_DISPATCH(SumEdges)(window, totals);
+void place_edge(const EdgeBands& bands, EdgeLine line, int sign, int least, float strongest,
+                EdgePlaces& places) {
+  HWY_DYNAMIC_DISPATCH(PlaceEdge)(bands, line, sign, least, strongest, places);
 }
 
-void sum_edges_plain(const EdgeWindow& w, EdgeTotals& totals) {
-  const float scale = static_cast<float>(w.sign) / static_cast<float>(w.flank);
-  const auto limit = static_cast<float>(w.limit);
-  for (auto& total : totals) total.fill(0);
-  for (int band = 0; band < w.bands; ++band) {
-    const std::int32_t* sums = w.sums + band * w.pitch;
-    const auto response = [&](int i) {
-      const auto bend = static_cast<float>(sums[i + w.flank] - 2 * sums[i] + sums[i - w.flank]);
-      const int value = static_cast<int>(std::clamp(bend * scale, -limit, limit));
-      return band < w.horizon ? std::max(value, (-11 * value) >> 4) : value;
+LineSums sum_places(const EdgePlaces& places, EdgeLine line, float tail) {
+  return HWY_DYNAMIC_DISPATCH(SumPlaces)(places, line, tail);
+}
+
+EdgeResponses respond_along(const EdgeBands& bands, EdgeLine left, EdgeLine right, float full) {
+  return HWY_DYNAMIC_DISPATCH(RespondAlong)(bands, left, right, full);
+}
+
+namespace {
+
+float row_of(const EdgeBands& bands, int band) {
+  return bands.first_row + bands.row_step * static_cast<float>(band);
+}
+
+int nearest_column(const EdgeBands& bands, EdgeLine line, int band) {
+  return static_cast<int>(row_of(bands, band) * line.slope + (line.column + (kFar + 0.5F))) -
+         static_cast<int>(kFar);
+}
+
+}  // namespace
+
+void place_edge_plain(const EdgeBands& bands, EdgeLine line, int sign, int least, float strongest,
+                      EdgePlaces& places) {
+  constexpr int kLast = 2 * EdgePlaces::kReach;
+  places = {};
+  places.count = whole_groups(bands.count);
+  for (int band = 0; band < bands.count; ++band) {
+    places.row[band] = row_of(bands, band);
+    const int first = nearest_column(bands, line, band) - EdgePlaces::kReach;
+    int r[kLast + 1], peak = 0;
+    for (int o = 0; o <= kLast; ++o) {
+      const int bend = bend_at(bands, band, first + o);
+      r[o] = band < bands.horizon ? std::abs(bend) : sign * bend;
+      if (r[o] > r[peak]) peak = o;
+    }
+    if (r[peak] < least || peak == 0 || peak == kLast) continue;
+    const int bend = r[peak - 1] - 2 * r[peak] + r[peak + 1];
+    const float shift =
+        bend < 0 ? 0.5F * static_cast<float>(r[peak - 1] - r[peak + 1]) / static_cast<float>(bend)
+                 : 0;
+    places.column[band] = static_cast<float>(first + peak) + std::clamp(shift, -0.5F, 0.5F);
+    places.weight[band] =
+        std::min(static_cast<float>(r[peak]) * (1 / static_cast<float>(bands.flank)), strongest);
+    ++places.found;
+  }
+}
+
+LineSums sum_places_plain(const EdgePlaces& places, EdgeLine line, float tail) {
+  float sums[6][kEdgeLanes] = {};
+  for (int i = 0; i < places.count; ++i) {
+    const float row = places.row[i];
+    const float error = places.column[i] - (line.column + line.slope * row);
+    const float u = error * (1 / tail);
+    const float rest = std::max(0.0F, 1 - u * u);
+    const float w = places.weight[i] * (rest * rest);
+    const float terms[6] = {w,         w * row,         w * row * row,
+                            w * error, w * row * error, w * error * error};
+    for (int k = 0; k < 6; ++k) sums[k][i % kEdgeLanes] += terms[k];
+  }
+  return {sum_of(sums[0]), sum_of(sums[1]), sum_of(sums[2]),
+          sum_of(sums[3]), sum_of(sums[4]), sum_of(sums[5])};
+}
+
+EdgeResponses respond_along_plain(const EdgeBands& bands, EdgeLine left, EdgeLine right,
+                                  float full) {
+  EdgeResponses result;
+  float below[2][kEdgeLanes] = {}, above[2][kEdgeLanes] = {};
+  for (int band = 0; band < bands.count; ++band) {
+    const auto response = [&](EdgeLine line, float factor) {
+      const int bend = bend_at(bands, band, nearest_column(bands, line, band));
+      return std::clamp(static_cast<float>(bend) * factor, -1.0F, 1.0F);
     };
-    for (int s = 0; s < EdgeWindow::kSlopes; ++s) {
-      for (int i = 0; i < EdgeWindow::kPlaces; ++i) {
-        totals[s][i] = static_cast<std::int16_t>(totals[s][i] + response((*w.starts)[band][s] + i));
-      }
+    const float r[2] = {response(left, -(1 / full)), response(right, 1 / full)};
+    const bool is_above = band < bands.horizon;
+    for (int e = 0; e < 2; ++e)
+      (is_above ? above : below)[e][band % kEdgeLanes] += is_above ? std::abs(r[e]) : r[e];
+    if (is_above) {
+      result.agree_above += std::min(std::abs(r[0]), std::abs(r[1])) > 0.3F;
+    } else {
+      result.agree_below += std::min(r[0], r[1]) > 0.25F;
     }
   }
+  result.below = {sum_of(below[0]), sum_of(below[1])};
+  result.above = {sum_of(above[0]), sum_of(above[1])};
+  return result;
 }
 
 }  // namespace bole

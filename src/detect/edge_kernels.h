@@ -6,29 +6,64 @@
 
 namespace bole {
 
-/// The inner loop of EdgeFitter's search: an edge's contrast summed along lines of several slopes.
-struct EdgeWindow {
-  static constexpr int kColumns = 64;  ///< that are looked at
-  static constexpr int kPlaces = 32;   ///< at which a line may stand: the middle ones
-  static constexpr int kSlopes = 9;
-  static constexpr int kMostBands = 80;
+/// The inner loops of EdgeFitter, in whole vectors of whatever this processor has, and the plain
+/// loops that say what they must give: equal results, sums of floats included, which are taken in
+/// kEdgeLanes parts whatever the vectors' length.
+inline constexpr int kEdgeLanes = 16;
+inline constexpr int kMostEdgeBands = 80;
 
-  const std::int32_t* sums = nullptr;  ///< of the first band, at the window's first column
-  std::ptrdiff_t pitch = 0;            ///< from a band's sums to the next's
-  int bands = 0;                       ///< at most kMostBands
-  int horizon = 0;                     ///< the first of them below it
-  int flank = 0;                       ///< columns of the means on either side
-  int sign = 1;                        ///< of the looked-for edge: 1 brightens to the right
-  int limit = 0;                       ///< of a band's response, log brightness as in Bands
-  /// Where in the window a slope's line of places starts, for each band.
-  const std::array<std::array<std::uint8_t, kSlopes>, kMostBands>* starts = nullptr;
+/// Bands of a panorama, as Bands keeps them, along an edge. `bend` at column x is
+/// sum[x + flank] - 2 sum[x] + sum[x - flank]: `flank` times what is brighter to the right.
+struct EdgeBands {
+  const std::uint16_t* sums = nullptr;  ///< of the first band, at column 0
+  std::ptrdiff_t pitch = 0;             ///< from a band's sums to the next's
+  int count = 0;                        ///< at most kMostEdgeBands
+  int horizon = 0;                      ///< the first of them below it
+  float first_row = 0;                  ///< of the first band's middle, the edge's foot being row 0
+  float row_step = 0;                   ///< rows a band
+  int flank = 0;                        ///< columns of the means on either side
 };
-using EdgeTotals = std::array<std::array<std::int16_t, EdgeWindow::kPlaces>, EdgeWindow::kSlopes>;
 
-/// totals[s][i] = sum over the bands of the response at window column starts[band][s] + i: the mean
-/// to the right less the mean to the left, times sign, cut off at the limit; above the horizon a
-/// response of the wrong sign counts 11 / 16 of one of the right sign, rounded down.
-void sum_edges(const EdgeWindow& window, EdgeTotals& totals);
-void sum_edges_plain(const EdgeWindow& window, EdgeTotals& totals);
+/// A straight edge: column + slope * row.
+struct EdgeLine {
+  float column = 0, slope = 0;
+};
+
+/// Sub-column places of an edge, band by band; weight 0 where it has none.
+struct EdgePlaces {
+  static constexpr int kReach = 3;  ///< columns beside the line that are looked at
+
+  int count = 0;  ///< bands, rounded up to kEdgeLanes
+  int found = 0;  ///< of them with a place
+  alignas(64) std::array<float, kMostEdgeBands> row, column, weight;
+};
+
+/// Looks for the highest sign * bend (above the horizon of either sign) within kReach columns of
+/// the line; it counts when it is at least `least` and not at the border. Its column is that of the
+/// parabola through it and its neighbours, its weight min(bend / flank, strongest).
+void place_edge(const EdgeBands& bands, EdgeLine line, int sign, int least, float strongest,
+                EdgePlaces& places);
+void place_edge_plain(const EdgeBands& bands, EdgeLine line, int sign, int least, float strongest,
+                      EdgePlaces& places);
+
+/// Sums over places of w = weight (1 - u^2)^2, u = error / tail, |u| < 1, and of w times row,
+/// row^2, error, row error, error^2; the error is a place's column less the line's.
+struct LineSums {
+  float w = 0, row = 0, row_row = 0, error = 0, row_error = 0, error_error = 0;
+};
+LineSums sum_places(const EdgePlaces& places, EdgeLine line, float tail);
+LineSums sum_places_plain(const EdgePlaces& places, EdgeLine line, float tail);
+
+/// What two edges respond along their lines: r = bend / full for the right edge, -bend / full for
+/// the left one, cut off at 1 on either side.
+struct EdgeResponses {
+  std::array<float, 2> below{};  ///< left, right: sums of r below the horizon
+  std::array<float, 2> above{};  ///< sums of |r| above it
+  int agree_below = 0;           ///< bands where both r are over 0.25
+  int agree_above = 0;           ///< bands where both |r| are over 0.3
+};
+EdgeResponses respond_along(const EdgeBands& bands, EdgeLine left, EdgeLine right, float full);
+EdgeResponses respond_along_plain(const EdgeBands& bands, EdgeLine left, EdgeLine right,
+                                  float full);
 
 }  // namespace bole

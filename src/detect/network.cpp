@@ -12,24 +12,31 @@ namespace {
 
 static_assert(weights::kInputs == TrunkFeatures::kCount, "train the network anew");
 
+// The second layer's weights with columns of zeros, for whole vectors.
+constexpr int kWidth = 8;
+static_assert(weights::kOutputs <= kWidth);
+constexpr auto kSecond = [] {
+  std::array<std::array<float, kWidth>, weights::kHidden> padded{};
+  for (int j = 0; j < weights::kHidden; ++j)
+    for (int k = 0; k < weights::kOutputs; ++k) padded[j][k] = weights::kSecond[j][k];
+  return padded;
+}();
+
 }  // namespace
 
 Judgement judge(const TrunkFeatures::Values& features) {
-  std::array<float, weights::kHidden> hidden = weights::kHiddenBias;
   // What was never seen in training is taken for the most extreme that was.
   std::array<float, weights::kInputs> inputs;
-  for (int i = 0; i < weights::kInputs; ++i) {
-    const float value = (features[i] - weights::kMean[i]) * weights::kScale[i];
-    inputs[i] = std::min(weights::kLimit, std::max(-weights::kLimit, value));
-  }
+  standardise(features.data(), weights::kInputs, weights::kMean, weights::kScale, weights::kLimit,
+              inputs.data());
+  std::array<float, weights::kHidden> hidden = weights::kHiddenBias;
   static_assert(weights::kHidden % 48 == 0);
   add_dense(inputs.data(), weights::kInputs, &weights::kFirst[0][0], weights::kHidden,
             hidden.data());
-  std::array<float, weights::kOutputs> out = weights::kOutputBias;
-  for (int j = 0; j < weights::kHidden; ++j) {
-    const float active = hidden[j] > 0 ? hidden[j] : 0.05F * hidden[j];
-    for (int k = 0; k < weights::kOutputs; ++k) out[k] += active * weights::kSecond[j][k];
-  }
+  for (float& value : hidden) value = std::max(value, 0.05F * value);
+  std::array<float, kWidth> out{};
+  std::copy(weights::kOutputBias.begin(), weights::kOutputBias.end(), out.begin());
+  add_dense(hidden.data(), weights::kHidden, kSecond[0].data(), kWidth, out.data());
   return {.logit = out[0],
           .centre_shift = out[1],
           .log_width = out[2],

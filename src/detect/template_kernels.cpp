@@ -1,7 +1,11 @@
 #include "detect/template_kernels.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstdlib>
 
+// Vectors of scalable length are left out: they cannot stand in structures.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "detect/template_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -12,51 +16,51 @@ namespace bole::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Wide = hn::ScalableTag<std::int32_t>;
+using Sums = hn::ScalableTag<std::uint16_t>;
 
 // Every kStep-th of the elements from `from` on.
 template <int kStep>
-hn::Vec<Wide> LoadEvery(const std::int32_t* from) {
-  const Wide d;
+HWY_INLINE hn::Vec<Sums> LoadEvery(const std::uint16_t* from) {
+  const Sums d;
   if constexpr (kStep == 1) {
     return hn::LoadU(d, from);
   } else if constexpr (kStep == 2) {
-    hn::Vec<Wide> even, odd;
+    hn::Vec<Sums> even, odd;
     hn::LoadInterleaved2(d, from, even, odd);
     return even;
   } else {
-    hn::Vec<Wide> first, second, third, fourth;
+    hn::Vec<Sums> first, second, third, fourth;
     hn::LoadInterleaved4(d, from, first, second, third, fourth);
     return first;
   }
 }
 
 template <int kStep>
-void RespondEvery(const std::int32_t* sum, int flank, float scale, int count, std::int16_t* out) {
-  const Wide d;
-  const hn::RebindToFloat<Wide> df;
-  const hn::Rebind<std::int16_t, Wide> d16;
-  const auto factor = hn::Set(df, scale);
-  const auto most = hn::Set(df, static_cast<float>(kFullResponse));
+void RespondEvery(const std::uint16_t* sum, int flank, std::uint16_t factor, int count,
+                  std::int16_t* out) {
+  const Sums d;
+  const hn::RebindToSigned<Sums> di;
+  const auto by = hn::Set(d, factor);
+  const auto most = hn::Set(d, static_cast<std::uint16_t>(kFullResponse));
   for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
-    const std::int32_t* at = sum + i * kStep;
+    const std::uint16_t* at = sum + i * kStep;
     const auto middle = LoadEvery<kStep>(at);
-    const auto bend = hn::Sub(hn::Add(LoadEvery<kStep>(at + flank), LoadEvery<kStep>(at - flank)),
-                              hn::Add(middle, middle));
-    const auto response = hn::Mul(hn::ConvertTo(df, bend), factor);
-    const auto clipped = hn::Min(most, hn::Max(hn::Neg(most), response));
-    hn::StoreU(hn::DemoteTo(d16, hn::ConvertTo(d, clipped)), d16, out + i);
+    const auto bend = hn::BitCast(di, hn::Sub(hn::Sub(LoadEvery<kStep>(at + flank), middle),
+                                              hn::Sub(middle, LoadEvery<kStep>(at - flank))));
+    const auto size = hn::Min(most, hn::MulHigh(hn::BitCast(d, hn::Abs(bend)), by));
+    const auto negative = hn::ShiftRight<15>(bend);
+    hn::StoreU(hn::Sub(hn::Xor(hn::BitCast(di, size), negative), negative), di, out + i);
   }
 }
 
-void EdgeResponses(const std::int32_t* sum, int flank, int step, float scale, int count,
+void EdgeResponses(const std::uint16_t* sum, int flank, int step, std::uint16_t factor, int count,
                    std::int16_t* out) {
   if (step == 1) {
-    RespondEvery<1>(sum, flank, scale, count, out);
+    RespondEvery<1>(sum, flank, factor, count, out);
   } else if (step == 2) {
-    RespondEvery<2>(sum, flank, scale, count, out);
+    RespondEvery<2>(sum, flank, factor, count, out);
   } else {
-    RespondEvery<4>(sum, flank, scale, count, out);
+    RespondEvery<4>(sum, flank, factor, count, out);
   }
 }
 
@@ -67,7 +71,7 @@ using Values = hn::Vec<Narrow>;
 struct Run {
   Values sum, best, foot;
 
-  void Add(Values value, Values end, bool may_end) {
+  HWY_INLINE void Add(Values value, Values end, bool may_end) {
     const Narrow d;
     sum = hn::Max(hn::Add(sum, value), hn::Zero(d));
     if (!may_end) return;
@@ -76,13 +80,13 @@ struct Run {
   }
 };
 
-Values Joined(Values l, Values r, Values against) {
+HWY_INLINE Values Joined(Values l, Values r, Values against) {
   return hn::Sub(hn::Add(hn::ShiftRight<2>(hn::Add(l, r)), hn::ShiftRight<1>(hn::Min(l, r))),
                  against);
 }
 
 // The same where the sign counts for less.
-Values JoinedAbove(Values l, Values r) {
+HWY_INLINE Values JoinedAbove(Values l, Values r) {
   const Narrow d;
   const auto soft = [&](Values v) {
     return hn::Max(v, hn::ShiftRight<4>(hn::Mul(v, hn::Set(d, -11))));
@@ -119,6 +123,29 @@ void SumColumns(const ColumnSums& s) {
   }
 }
 
+int FindPeaks(const std::int16_t* evidence, int count, int least, int reach, int* places) {
+  const Narrow d;
+  const auto enough = hn::Set(d, static_cast<std::int16_t>(least - 1));
+  int found = 0;
+  for (int start = 0; start < count; start += static_cast<int>(hn::Lanes(d))) {
+    const std::int16_t* at = evidence + start;
+    const auto here = hn::LoadU(d, at);
+    auto peak = hn::Gt(here, enough);
+    for (int k = 1; k <= reach && !hn::AllFalse(d, peak); ++k) {
+      const auto before = hn::LoadU(d, at - k), after = hn::LoadU(d, at + k);
+      peak = hn::And(peak, hn::AndNot(hn::Gt(before, here), hn::Gt(here, after)));
+    }
+    if (hn::AllFalse(d, peak)) continue;
+    std::uint64_t bits = 0;
+    hn::StoreMaskBits(d, peak, reinterpret_cast<std::uint8_t*>(&bits));
+    for (; bits != 0; bits &= bits - 1) {
+      const int place = start + std::countr_zero(bits);
+      if (place < count) places[found++] = place;
+    }
+  }
+  return found;
+}
+
 }  // namespace bole::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -127,21 +154,22 @@ namespace bole {
 
 HWY_EXPORT(EdgeResponses);
 HWY_EXPORT(SumColumns);
+HWY_EXPORT(FindPeaks);
 
-void edge_responses(const std::int32_t* sum, int flank, int step, float scale, int count,
+void edge_responses(const std::uint16_t* sum, int flank, int step, std::uint16_t factor, int count,
                     std::int16_t* out) {
-  HWY_DYNAMIC_DISPATCH(EdgeResponses)(sum, flank, step, scale, count, out);
+  HWY_DYNAMIC_DISPATCH(EdgeResponses)(sum, flank, step, factor, count, out);
 }
 
 void sum_columns(const ColumnSums& sums) { HWY_DYNAMIC_DISPATCH(SumColumns)(sums); }
 
-void edge_responses_plain(const std::int32_t* sum, int flank, int step, float scale, int count,
-                          std::int16_t* out) {
-  constexpr auto kMost = static_cast<float>(kFullResponse);
+void edge_responses_plain(const std::uint16_t* sum, int flank, int step, std::uint16_t factor,
+                          int count, std::int16_t* out) {
   for (int i = 0; i < count; ++i) {
     const int x = i * step;
-    const float response = static_cast<float>(sum[x + flank] - 2 * sum[x] + sum[x - flank]) * scale;
-    out[i] = static_cast<std::int16_t>(std::clamp(response, -kMost, kMost));
+    const auto bend = static_cast<std::int16_t>(sum[x + flank] - 2 * sum[x] + sum[x - flank]);
+    const int size = std::min(kFullResponse, std::abs(bend) * factor >> 16);
+    out[i] = static_cast<std::int16_t>(bend < 0 ? -size : size);
   }
 }
 
@@ -168,6 +196,21 @@ void sum_columns_plain(const ColumnSums& s) {
       s.foot[polarity][i] = static_cast<std::int16_t>(foot);
     }
   }
+}
+
+int find_peaks(const std::int16_t* evidence, int count, int least, int reach, int* places) {
+  return HWY_DYNAMIC_DISPATCH(FindPeaks)(evidence, count, least, reach, places);
+}
+
+int find_peaks_plain(const std::int16_t* evidence, int count, int least, int reach, int* places) {
+  int found = 0;
+  for (int i = 0; i < count; ++i) {
+    bool peak = evidence[i] >= least;
+    for (int k = 1; peak && k <= reach; ++k)
+      peak = evidence[i] >= evidence[i - k] && evidence[i] > evidence[i + k];
+    if (peak) places[found++] = i;
+  }
+  return found;
 }
 
 }  // namespace bole

@@ -11,12 +11,13 @@ inline constexpr int kTemplateChunk = 64;
 
 inline constexpr int kFullResponse = 64;  ///< of an edge of full contrast
 
-/// out[i] = (sum[x + flank] - 2 sum[x] + sum[x - flank]) scale, x = i step, cut off at
-/// kFullResponse on either side and towards zero; step is 1, 2 or 4.
-void edge_responses(const std::int32_t* sum, int flank, int step, float scale, int count,
+/// out[i] = (|bend| factor) / 2^16 with the sign of bend = sum[x + flank] - 2 sum[x] +
+/// sum[x - flank], x = i step; rounded towards zero and cut off at kFullResponse on either side.
+/// sum is modulo 2^16, bend within 2^15; step is 1, 2 or 4.
+void edge_responses(const std::uint16_t* sum, int flank, int step, std::uint16_t factor, int count,
                     std::int16_t* out);
-void edge_responses_plain(const std::int32_t* sum, int flank, int step, float scale, int count,
-                          std::int16_t* out);
+void edge_responses_plain(const std::uint16_t* sum, int flank, int step, std::uint16_t factor,
+                          int count, std::int16_t* out);
 
 /// What is summed down the columns, and where the results go.
 struct ColumnSums {
@@ -35,5 +36,11 @@ struct ColumnSums {
 /// band's value is ((l + r) / 4 + min(l, r) / 2 - 35) 13 / 32. All divisions round down.
 void sum_columns(const ColumnSums& sums);
 void sum_columns_plain(const ColumnSums& sums);
+
+/// Writes the places i < count, ascending, where evidence[i] is at least `least`, not below that of
+/// the `reach` places before it and above that of the `reach` places after it; returns how many.
+/// `evidence` may be read `reach` elements beyond either end, `places` has room for `count`.
+int find_peaks(const std::int16_t* evidence, int count, int least, int reach, int* places);
+int find_peaks_plain(const std::int16_t* evidence, int count, int least, int reach, int* places);
 
 }  // namespace bole

@@ -13,6 +13,7 @@ constexpr double kContrast = 0.20;  // of log brightness: full contrast
 constexpr int kLeastEvidence = 64;  // of a candidate
 constexpr double kWidthStep = 1.15;
 constexpr double kNarrowest = 4;  // columns
+constexpr int kWidestFlank = 28;  // columns
 constexpr double kSlope = 0.30;   // rising ground shifts feet by up to this tangent
 
 int widest_template(const DetectorSetup& setup) {
@@ -32,6 +33,7 @@ Templates::Templates(const DetectorSetup& setup, int most_candidates)
       width_(setup.panorama.width),
       bands_(setup.panorama.rows / Bands::kRows),
       widest_(widest_template(setup)),
+      pad_(widest_ / 16 + 16),
       most_(most_candidates),
       wraps_(setup.panorama.wraps()),
       focal_(setup.panorama.focal()) {
@@ -41,11 +43,11 @@ Templates::Templates(const DetectorSetup& setup, int most_candidates)
     return std::clamp((horizon + focal_ * down) / Bands::kRows, 0.0, static_cast<double>(bands_));
   };
 
-  for (const int flank : {2, 3, 5, 8, 12, 18, 28}) {
+  for (const int flank : {2, 3, 5, 8, 12, 18, kWidestFlank}) {
     const int step = flank >= 18 ? 4 : flank >= 8 ? 2 : 1;
     const int pitch = (width_ + widest_ + 8) / step + 2 * kTemplateChunk;
-    flanks_.push_back(
-        {flank, step, pitch, std::vector<std::int16_t>(static_cast<std::size_t>(bands_) * pitch)});
+    flanks_.push_back({flank, step, pitch});
+    responses_.resize(std::max(responses_.size(), static_cast<std::size_t>(bands_) * pitch));
   }
   const Search& search = setup.search;
   const double narrowest =
@@ -79,7 +81,7 @@ Templates::Templates(const DetectorSetup& setup, int most_candidates)
     peaks.resize(sizes_.size());
     for (std::size_t i = 0; i < sizes_.size(); ++i) {
       const int n = width_ / flanks_[sizes_[i].flank].step + kTemplateChunk;
-      peaks[i].evidence.resize(n);
+      peaks[i].evidence.resize(n + 2 * pad_);
       peaks[i].foot.resize(n);
     }
   }
@@ -90,18 +92,21 @@ Templates::Templates(const DetectorSetup& setup, int most_candidates)
         std::find(first, first + Bands::kRows * width_, 0) == first + Bands::kRows * width_;
     wholly_seen_.push_back(whole && wraps_);
   }
+  places_.resize(width_);
   found_.reserve(20000);
   kept_.reserve(most_);
 }
 
-void Templates::respond(const Bands& bands, Flank& flank) const {
+void Templates::respond(const Bands& bands, const Flank& flank) {
+  static_assert(kWidestFlank <= Bands::kMostFlank);
   const int k = flank.width;
-  const float scale = static_cast<float>(kFullResponse / (kContrast * Bands::kScale * k));
+  const auto factor = static_cast<std::uint16_t>(
+      std::lround(65536 * kFullResponse / (kContrast * Bands::kScale * k)));
   const int n = std::min(flank.pitch - kTemplateChunk,
                          (width_ + bands.margin() - k) / flank.step - kTemplateChunk);
   for (int band = 0; band < bands_; ++band) {
-    std::int16_t* response = flank.response.data() + static_cast<std::size_t>(band) * flank.pitch;
-    edge_responses(bands.sum(band), k, flank.step, scale, n, response);
+    std::int16_t* response = responses_.data() + static_cast<std::size_t>(band) * flank.pitch;
+    edge_responses(bands.sum(band), k, flank.step, factor, n, response);
     if (wholly_seen_[band]) continue;
     const std::uint8_t* seen = bands.seen(band);
     for (int i = 0; i < n; ++i) {
@@ -114,7 +119,7 @@ void Templates::respond(const Bands& bands, Flank& flank) const {
 void Templates::accumulate(int size_index) {
   const Size& size = sizes_[size_index];
   const Flank& flank = flanks_[size.flank];
-  ColumnSums sums{.responses = flank.response.data(),
+  ColumnSums sums{.responses = responses_.data(),
                   .pitch = flank.pitch,
                   .across = size.width / flank.step,
                   .horizon = horizon_band_,
@@ -122,43 +127,39 @@ void Templates::accumulate(int size_index) {
                   .last_foot = size.last_foot,
                   .count = width_ / flank.step};
   for (const int polarity : {0, 1}) {
-    sums.evidence[polarity] = peaks_[polarity][size_index].evidence.data();
+    sums.evidence[polarity] = peaks_[polarity][size_index].evidence.data() + pad_;
     sums.foot[polarity] = peaks_[polarity][size_index].foot.data();
   }
   sum_columns(sums);
+  for (const int polarity : {0, 1}) pad(sums.evidence[polarity], sums.count);
+}
+
+// What lies beyond the borders: the other side of the turn, or nothing.
+void Templates::pad(std::int16_t* evidence, int count) const {
+  for (int i = 0; i < pad_; ++i) {
+    evidence[-1 - i] = wraps_ ? evidence[count - 1 - i] : std::int16_t{-1};
+    evidence[count + i] = wraps_ ? evidence[i] : std::int16_t{-1};
+  }
 }
 
 // Whether a template of the neighbouring size, about the same centre, has more evidence.
 bool Templates::beaten_by(int size_index, int polarity, double centre, int evidence) const {
   const Size& size = sizes_[size_index];
   const int step = flanks_[size.flank].step;
-  const int n = width_ / step;
   const int place = static_cast<int>(std::lround((centre - size.width * 0.5) / step));
-  const auto& peaks = peaks_[polarity][size_index].evidence;
-  for (int i = place - 1; i <= place + 1; ++i) {
-    const int j = wraps_ ? (i + n) % n : std::clamp(i, 0, n - 1);
-    if (peaks[j] > evidence) return true;
-  }
-  return false;
+  const std::int16_t* at = peaks_[polarity][size_index].evidence.data() + pad_ + place;
+  return std::max({at[-1], at[0], at[1]}) > evidence;
 }
 
 void Templates::collect(int size_index, int polarity) {
   const Size& size = sizes_[size_index];
   const Peaks& peaks = peaks_[polarity][size_index];
   const int step = flanks_[size.flank].step;
-  const int n = width_ / step;
   const int reach = std::max(1, static_cast<int>(0.15 * size.width) / step);
-  for (int i = 0; i < n; ++i) {
-    const int evidence = peaks.evidence[i];
-    if (evidence < kLeastEvidence) continue;
-    bool highest = true;
-    for (int d = 1; highest && d <= reach; ++d) {
-      const int before = wraps_ ? (i - d + n) % n : std::max(0, i - d);
-      const int after = wraps_ ? (i + d) % n : std::min(n - 1, i + d);
-      highest =
-          evidence >= peaks.evidence[before] && (evidence > peaks.evidence[after] || after == i);
-    }
-    if (!highest) continue;
+  const std::int16_t* at = peaks.evidence.data() + pad_;
+  const int count = find_peaks(at, width_ / step, kLeastEvidence, reach, places_.data());
+  for (const int i : std::span(places_).first(count)) {
+    const int evidence = at[i];
     const double centre = i * step + size.width * 0.5;
     if (size_index > 0 && beaten_by(size_index - 1, polarity, centre, evidence)) continue;
     if (size_index + 1 < static_cast<int>(sizes_.size()) &&
@@ -174,14 +175,17 @@ void Templates::collect(int size_index, int polarity) {
 
 // Keeps the most evident; of near twins only the better.
 void Templates::thin_out() {
-  std::sort(found_.begin(), found_.end(), [](const Candidate& a, const Candidate& b) {
-    return a.rank != b.rank   ? a.rank > b.rank
-           : a.left != b.left ? a.left < b.left
-                              : a.width < b.width;
-  });
+  // Few of them are wanted: a heap gives them in order without sorting the rest.
+  const auto comes_later = [](const Candidate& a, const Candidate& b) {
+    return a.rank != b.rank   ? a.rank < b.rank
+           : a.left != b.left ? a.left > b.left
+                              : a.width > b.width;
+  };
+  std::make_heap(found_.begin(), found_.end(), comes_later);
   kept_.clear();
-  for (const Candidate& c : found_) {
-    if (kept_.size() == most_) break;
+  for (auto end = found_.end(); end != found_.begin() && kept_.size() < most_; --end) {
+    std::pop_heap(found_.begin(), end, comes_later);
+    const Candidate& c = *(end - 1);
     const bool twin = std::any_of(kept_.begin(), kept_.end(), [&](const Candidate& k) {
       const float tolerance = std::max(1.5F, 0.15F * std::min(c.width, k.width));
       float shift = std::abs(c.left + 0.5F * c.width - k.left - 0.5F * k.width);
@@ -194,9 +198,15 @@ void Templates::thin_out() {
 }
 
 std::span<const Candidate> Templates::find(const Bands& bands) {
-  for (Flank& flank : flanks_) respond(bands, flank);
+  // Sizes of the same flank follow each other.
+  int responded = -1;
+  for (int i = 0; i < static_cast<int>(sizes_.size()); ++i) {
+    const int flank = sizes_[i].flank;
+    if (flank != responded) respond(bands, flanks_[flank]);
+    responded = flank;
+    accumulate(i);
+  }
   found_.clear();
-  for (int i = 0; i < static_cast<int>(sizes_.size()); ++i) accumulate(i);
   for (int i = 0; i < static_cast<int>(sizes_.size()); ++i)
     for (const int polarity : {0, 1}) collect(i, polarity);
   thin_out();

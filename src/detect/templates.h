@@ -45,30 +45,33 @@ class Templates {
     int first_foot = 0, last_foot = 0;  // bands: the foot is the lower border of one of them
   };
   struct Flank {
-    int width = 0;                       // columns of the means on either side of an edge
-    int step = 0;                        // every how many columns it is evaluated
-    int pitch = 0;                       // evaluated columns a band
-    std::vector<std::int16_t> response;  // bands x pitch; brighter to the right is positive
+    int width = 0;  // columns of the means on either side of an edge
+    int step = 0;   // every how many columns it is evaluated
+    int pitch = 0;  // evaluated columns a band
   };
-  struct Peaks {  // best sum over all feet, for every left edge
+  struct Peaks {  // best sum over all feet, for every left edge; evidence begins `pad_` before them
     std::vector<std::int16_t> evidence;
     std::vector<std::int16_t> foot;
   };
 
-  void respond(const Bands& bands, Flank& flank) const;
+  void respond(const Bands& bands, const Flank& flank);
   void accumulate(int size_index);
+  void pad(std::int16_t* evidence, int count) const;
   void collect(int size_index, int polarity);
   bool beaten_by(int size_index, int polarity, double centre, int evidence) const;
   void thin_out();
 
-  int columns_, width_, bands_, horizon_band_, widest_;
+  int columns_, width_, bands_, horizon_band_, widest_, pad_;
   std::size_t most_;
   std::vector<std::uint8_t> wholly_seen_;  // bands without a masked pixel
   bool wraps_;
   double focal_;
   std::vector<Size> sizes_;
   std::vector<Flank> flanks_;
-  std::vector<Peaks> peaks_[2];  // dark, bright
+  std::vector<std::int16_t> responses_;  // of one flank at a time, so that they stay in the cache:
+                                         // bands x pitch; brighter to the right is positive
+  std::vector<Peaks> peaks_[2];          // dark, bright
+  std::vector<int> places_;
   std::vector<Candidate> found_, kept_;
 };
 

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "detect/grid_kernels.h"
+#include "detect/strip_kernels.h"
+
 namespace bole {
 namespace {
 
@@ -50,40 +53,39 @@ float FeatureReader::read_grid(const Bands& bands, const TrunkShape& shape, int 
   borders[5] = shape.foot - 4 * unit;
   for (int i = 0; i < 6; ++i) borders[6 + i] = borders[5] - part * static_cast<float>(i + 1);
 
-  // Cell means of every band, summed down the column.
-  constexpr int kMost = 256;
-  std::array<std::array<float, F::kAcross>, kMost + 1> sums;
-  const int last =
-      std::min({last_band_, static_cast<int>(borders[0] / Bands::kRows) + 1, first_band + kMost});
+  const int last = std::min(
+      {last_band_, static_cast<int>(borders[0] / Bands::kRows) + 1, first_band + kMostGridBands});
   const int first = std::min(first_band, last - 1);
-  sums[0].fill(0);
-  const float w = shape.width(), sign = shape.dark ? 1.0F : -1.0F;
-  for (int band = first; band < last; ++band) {
-    const std::int32_t* sum = bands.sum(band);
-    const float row = (static_cast<float>(band) + 0.5F) * Bands::kRows - shape.foot;
-    const float middle = shape.centre() + shape.slope() * row;
-    std::array<float, F::kAcross + 1> at;
-    for (int i = 0; i <= F::kAcross; ++i) {
-      const float x = middle + kBorders[i] * w;
-      const int whole = floor_of(x);
-      const float rest = x - static_cast<float>(whole);
-      // Differences of large sums: subtract the first border's in whole numbers.
-      const std::int32_t base = sum[floor_of(middle - 1.5F * w)];
-      at[i] = static_cast<float>(sum[whole] - base) +
-              rest * static_cast<float>(sum[whole + 1] - sum[whole]);
-    }
-    const auto& before = sums[band - first];
-    auto& after = sums[band - first + 1];
-    for (int i = 0; i < F::kAcross; ++i)
-      after[i] =
-          before[i] + sign * (at[i + 1] - at[i]) /
-                          (static_cast<float>(Bands::kScale) * (kBorders[i + 1] - kBorders[i]) * w);
-  }
-  const auto sum_at = [&](float row, int i) {
-    const float b = std::clamp(row / Bands::kRows - static_cast<float>(first), 0.0F,
+  const float w = shape.width();
+  const float row = (static_cast<float>(first) + 0.5F) * Bands::kRows - shape.foot;
+  const bool narrow = 0.5F * w + 1 < static_cast<float>(Bands::kMostColumns);
+  CellColumns cells{.sums = bands.sum(first),
+                    .pitch = bands.pitch(),
+                    .coarse = narrow ? nullptr : bands.coarse(first),
+                    .coarse_pitch = bands.coarse_pitch(),
+                    .margin = bands.margin(),
+                    .bands = last - first,
+                    .middle = shape.centre() + shape.slope() * row,
+                    .lean = shape.slope() * Bands::kRows};
+  for (int i = 0; i < kGridLanes; ++i) cells.borders[i] = kBorders[std::min(i, F::kAcross)] * w;
+  CellSums sums;
+  sum_cells(cells, sums);
+
+  const float sign = shape.dark ? 1.0F : -1.0F;
+  std::array<float, F::kAcross> per_cell;
+  for (int i = 0; i < F::kAcross; ++i)
+    per_cell[i] =
+        sign / (float{Bands::kScale * CellSums::kParts} * (kBorders[i + 1] - kBorders[i]) * w);
+  // A place among the bands, from the first one's upper border.
+  struct Place {
+    int band;
+    float rest;
+  };
+  const auto place = [&](float row_at) {
+    const float b = std::clamp(row_at / Bands::kRows - static_cast<float>(first), 0.0F,
                                static_cast<float>(last - first) - 1e-3F);
     const auto whole = static_cast<int>(b);
-    return sums[whole][i] + (b - static_cast<float>(whole)) * (sums[whole + 1][i] - sums[whole][i]);
+    return Place{whole, b - static_cast<float>(whole)};
   };
   float total = 0, squares = 0;
   for (int h = 0; h < F::kHeights; ++h) {
@@ -91,8 +93,16 @@ float FeatureReader::read_grid(const Bands& bands, const TrunkShape& shape, int 
                 start = static_cast<float>(first * Bands::kRows);
     const float low = std::clamp(borders[h], start + 1, bottom);
     const float high = std::clamp(borders[h + 1], start, low - 1);
+    const Place from = place(high), to = place(low);
+    const auto *from_sums = sums.at[from.band], *to_sums = sums.at[to.band];
+    const float per_band = Bands::kRows / (low - high);
     for (int i = 0; i < F::kAcross; ++i) {
-      const float value = (sum_at(low, i) - sum_at(high, i)) * Bands::kRows / (low - high);
+      const auto beyond = [i](const std::int32_t* at, float rest) {
+        return rest * static_cast<float>(at[kGridLanes + i] - at[i]);
+      };
+      const float sum = static_cast<float>(to_sums[i] - from_sums[i]) + beyond(to_sums, to.rest) -
+                        beyond(from_sums, from.rest);
+      const float value = sum * per_band * per_cell[i];
       out[h * F::kAcross + i] = value;
       total += value;
       squares += value * value;
@@ -106,26 +116,59 @@ float FeatureReader::read_grid(const Bands& bands, const TrunkShape& shape, int 
   return spread;
 }
 
-// Mean log brightness of a row between two columns.
-float FeatureReader::strip(const std::uint8_t* row, float from, float to) const {
-  const int a = nearest(from);
-  const int n = std::max(1, nearest(to) - a);
+// The sum of a row's pixels, continued round the turn or by the border's.
+int FeatureReader::sum_round(const std::uint8_t* row, int first, int last) const {
   int sum = 0;
-  if (a >= 0 && a + n <= width_) {
-    for (int x = a; x < a + n; ++x) sum += row[x];
-  } else {
-    for (int x = a; x < a + n; ++x)
-      sum += row[wraps_ ? ((x % width_) + width_) % width_ : std::clamp(x, 0, width_ - 1)];
+  for (int x = first; x < last; ++x) {
+    const int round = x < 0 ? x + width_ : x >= width_ ? x - width_ : x;
+    sum += row[std::clamp(wraps_ ? round : x, 0, width_ - 1)];
   }
-  return log_[4 * sum / n];
+  return sum;
+}
+
+// Mean log brightness left of the trunk, in its core and right of it.
+FeatureReader::Strips FeatureReader::strips(const PanoramaView& panorama, const TrunkShape& shape,
+                                            int row) const {
+  const float w = shape.width();
+  const float gap = 0.5F * w + std::max(1.0F, 0.1F * w), flank = std::max(2.0F, 0.5F * w);
+  const float middle =
+      shape.centre() + shape.slope() * (static_cast<float>(row) + 0.5F - shape.foot);
+  const float from[F::kStrips] = {middle - gap - flank, middle - 0.28F * w, middle + gap};
+  const float to[F::kStrips] = {middle - gap, middle + 0.28F * w, middle + gap + flank};
+  RowStrips bounds;
+  for (int k = 0; k < F::kStrips; ++k) {
+    bounds.first[k] = nearest(from[k]);
+    bounds.last[k] = std::max(bounds.first[k] + 1, nearest(to[k]));
+  }
+  const std::uint8_t* pixels = panorama.row(row);
+  std::array<int, F::kStrips> sums;
+  if (bounds.first[0] >= 0 && bounds.last[2] <= width_ &&
+      pixels - panorama.pixels + bounds.first[0] >= RowStrips::kUnderread) {
+    sums = sum_strips(pixels, bounds);
+  } else {
+    for (int k = 0; k < F::kStrips; ++k)
+      sums[k] = sum_round(pixels, bounds.first[k], bounds.last[k]);
+  }
+  Strips means;
+  for (int k = 0; k < F::kStrips; ++k) {
+    const int n = bounds.last[k] - bounds.first[k];
+    // A quotient of whole numbers, rounded down: the half keeps it off the next one.
+    means[k] =
+        log_[static_cast<int>((4 * static_cast<float>(sums[k]) + 0.5F) / static_cast<float>(n))];
+  }
+  return means;
 }
 
 void FeatureReader::read_foot(const PanoramaView& panorama, const TrunkShape& shape, float spread,
                               float* out) const {
-  const float unit = foot_unit(shape, focal_), w = shape.width();
-  const float gap = std::max(1.0F, 0.1F * w), flank = std::max(2.0F, 0.5F * w);
+  const float unit = foot_unit(shape, focal_);
   const float sign = shape.dark ? 1.0F : -1.0F;
-  std::array<std::array<float, F::kStrips>, F::kFootRows> strips{};
+  std::array<Strips, F::kFootRows> lines{};
+  // Neighbouring lines share rows where the unit is small.
+  struct {
+    int row = -1;
+    Strips means;
+  } known[2];
   for (int j = 0; j < F::kFootRows; ++j) {
     const float place =
         shape.foot + (static_cast<float>(j - F::kFootRows / 2) + 0.5F) * unit - 0.5F;
@@ -135,23 +178,19 @@ void FeatureReader::read_foot(const PanoramaView& panorama, const TrunkShape& sh
       const float at = high + static_cast<float>(k) * spacing;
       const int i = std::clamp(nearest(at), 0, rows_ - 1);
       const float weight = spacing > 1 ? 0.5F : k == 0 ? 1 - (place - high) : place - high;
-      const float row = static_cast<float>(i) + 0.5F - shape.foot;
-      const float middle = shape.centre() + shape.slope() * row;
-      const std::uint8_t* pixels = panorama.row(i);
-      strips[j][0] +=
-          weight * strip(pixels, middle - 0.5F * w - gap - flank, middle - 0.5F * w - gap);
-      strips[j][1] += weight * strip(pixels, middle - 0.28F * w, middle + 0.28F * w);
-      strips[j][2] +=
-          weight * strip(pixels, middle + 0.5F * w + gap, middle + 0.5F * w + gap + flank);
+      auto& [row, means] = known[i & 1];
+      if (row != i) means = strips(panorama, shape, i);
+      row = i;
+      for (int strip = 0; strip < F::kStrips; ++strip) lines[j][strip] += weight * means[strip];
     }
   }
   // The trunk's own brightness above the foot is the reference.
   float core = 0;
-  for (int j = 0; j < F::kFootRows / 2; ++j) core += strips[j][1];
+  for (int j = 0; j < F::kFootRows / 2; ++j) core += lines[j][1];
   core /= F::kFootRows / 2;
   const float scale = sign / std::max(spread, kLeastSpread);
   for (int j = 0; j < F::kFootRows; ++j) {
-    const auto& s = strips[j];
+    const auto& s = lines[j];
     const float values[3] = {s[0] - s[1], s[1] - core, s[2] - s[1]};
     for (int k = 0; k < F::kStrips; ++k)
       out[j * F::kStrips + k] = std::clamp(values[k] * scale, -4.0F, 4.0F);

@@ -37,7 +37,9 @@ class FeatureReader {
                   float* mean) const;
   void read_foot(const PanoramaView& panorama, const TrunkShape& shape, float spread,
                  float* out) const;
-  float strip(const std::uint8_t* row, float from, float to) const;
+  using Strips = std::array<float, TrunkFeatures::kStrips>;
+  Strips strips(const PanoramaView& panorama, const TrunkShape& shape, int row) const;
+  int sum_round(const std::uint8_t* row, int first, int last) const;
 
   int rows_, width_, last_band_;
   bool wraps_;

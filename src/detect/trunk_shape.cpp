@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "detect/edge_search.h"
+
 namespace bole {
 namespace {
 
@@ -14,14 +16,26 @@ constexpr float kLeastSum = 1.0F;    // of the contrast above another foot, in f
 constexpr float kFall = 0.6F;        // by how much it falls below it
 constexpr float kWrongSign = -0.7F;  // what a response of the wrong sign counts above the horizon
 
-float response(const std::int32_t* sum, int x, int k) {
-  return static_cast<float>(sum[x + k] - 2 * sum[x] + sum[x - k]) / static_cast<float>(k);
+float response(const std::uint16_t* sum, int x, int k) {
+  const auto bend = static_cast<std::int16_t>(sum[x + k] - 2 * sum[x] + sum[x - k]);
+  return static_cast<float>(bend) / static_cast<float>(k);
 }
 
 // To the nearest whole number; columns and rows stay far from the limits.
 int nearest(float x) { return static_cast<int>(x + 16384.5F) - 16384; }
 
-float slope_of(int s) { return kSlopeStep * static_cast<float>(s - EdgeWindow::kSlopes / 2); }
+// The line along which an edge of contrast `sign` stands out most, at most `reach` columns from
+// `column` at the foot.
+EdgeLine search(const EdgeBands& bands, float column, int reach, int sign) {
+  const int middle = nearest(column);
+  const FoundEdge found = find_edge(bands, {.first_column = middle - EdgeSearch::kColumns / 2,
+                                            .reach = reach,
+                                            .slope_step = kSlopeStep,
+                                            .sign = sign,
+                                            .limit = static_cast<int>(kContrast)});
+  return {static_cast<float>(middle + found.place - EdgeSearch::kPlaces / 2),
+          kSlopeStep * static_cast<float>(found.slope - EdgeSearch::kSlopes / 2)};
+}
 
 float row_of(int band) { return (static_cast<float>(band) + 0.5F) * Bands::kRows; }
 
@@ -60,132 +74,59 @@ int EdgeFitter::first_band(float left, float right) const {
   return first;
 }
 
-EdgeFitter::Line EdgeFitter::search(const Bands& bands, Line start, const Starts& starts,
-                                    Extent extent, int flank, int reach, int sign) const {
-  constexpr int kPlaces = EdgeWindow::kPlaces;
-  const int origin = nearest(start.column) - EdgeWindow::kColumns / 2;
-  EdgeTotals totals;
-  sum_edges({.sums = bands.sum(extent.first) + origin,
-             .pitch = bands.pitch(),
-             .bands = extent.count(),
-             .horizon = horizon_band_ - extent.first,
-             .flank = flank,
-             .sign = sign,
-             .limit = static_cast<int>(kContrast),
-             .starts = &starts},
-            totals);
-  float best = -1e9F;
-  Line found = start;
-  for (int s = 0; s < EdgeWindow::kSlopes; ++s) {
-    for (int i = kPlaces / 2 - reach; i <= kPlaces / 2 + reach; ++i) {
-      const float value = static_cast<float>(totals[s][i]) *
-                          (1 - 0.002F * static_cast<float>(std::abs(i - kPlaces / 2)));
-      if (value <= best) continue;
-      best = value;
-      found = {static_cast<float>(origin + EdgeWindow::kColumns / 2 + i - kPlaces / 2),
-               slope_of(s)};
-    }
-  }
-  return found;
+EdgeBands EdgeFitter::along(const Bands& bands, Extent extent, float foot, int flank) const {
+  return {.sums = bands.sum(extent.first),
+          .pitch = bands.pitch(),
+          .count = extent.count(),
+          .horizon = horizon_band_ - extent.first,
+          .first_row = row_of(extent.first) - foot,
+          .row_step = Bands::kRows,
+          .flank = flank};
 }
 
-EdgeFitter::Placed EdgeFitter::place(const Bands& bands, Line& line, float foot, Extent extent,
-                                     int flank, int sign) const {
-  constexpr int kReach = 3;
-  std::array<float, EdgeWindow::kMostBands> rows, places, weights;
-  const float scale = 1 / static_cast<float>(flank);
-  const int least = nearest(0.15F * kContrast * static_cast<float>(flank));
-  int n = 0;
-  for (int band = extent.first; band < extent.last; ++band) {
-    const float row = row_of(band) - foot;
-    const int middle = nearest(line.column + line.slope * row);
-    // In whole numbers, `flank` times the response.
-    std::array<int, 2 * kReach + 1> r;
-    const std::int32_t* sum = bands.sum(band) + middle - kReach;
-    int peak = 0;
-    for (int o = 0; o <= 2 * kReach; ++o) {
-      const int bend = sign * (sum[o + flank] - 2 * sum[o] + sum[o - flank]);
-      r[o] = band < horizon_band_ ? std::abs(bend) : bend;
-      if (r[o] > r[peak]) peak = o;
-    }
-    if (r[peak] < least || peak == 0 || peak == 2 * kReach) continue;
-    const int bend = r[peak - 1] - 2 * r[peak] + r[peak + 1];
-    const float shift =
-        bend < 0 ? 0.5F * static_cast<float>(r[peak - 1] - r[peak + 1]) / static_cast<float>(bend)
-                 : 0;
-    rows[n] = row;
-    places[n] = static_cast<float>(middle + peak - kReach) + std::clamp(shift, -0.5F, 0.5F);
-    weights[n] = std::min(static_cast<float>(r[peak]) * scale, kStrongContrast);
-    ++n;
-  }
-  if (n < 4) return {3, 1};
-  // Straight line by least squares; places far off it count less and less.
-  Line fitted = line;
+// Straight line by least squares; places far off it count less and less.
+EdgeFitter::Placed EdgeFitter::place(const EdgeBands& bands, EdgeLine& line, int sign) const {
+  EdgePlaces places;
+  const int least = nearest(0.15F * kContrast * static_cast<float>(bands.flank));
+  place_edge(bands, line, sign, least, kStrongContrast, places);
+  if (places.found < 4) return {3, 1};
+  EdgeLine fitted = line;
   float scatter = 1, slope_variance = 1;
   for (int round = 0; round < 3; ++round) {
     const float limit = round == 0 ? 2.0F : std::max(0.4F, 1.5F * scatter);
-    double s = 0, sr = 0, srr = 0, sp = 0, srp = 0, se = 0;
-    for (int i = 0; i < n; ++i) {
-      const float error = places[i] - fitted.column - fitted.slope * rows[i];
-      const float u = error / (2.5F * limit);
-      const float tail = u * u < 1 ? (1 - u * u) * (1 - u * u) : 0;
-      const double w = weights[i] * tail;
-      s += w;
-      sr += w * rows[i];
-      srr += w * rows[i] * rows[i];
-      sp += w * places[i];
-      srp += w * rows[i] * places[i];
-      se += w * error * error;
-    }
-    if (s <= 0) break;
+    const LineSums s = sum_places(places, fitted, 2.5F * limit);
+    if (s.w <= 0) break;
     // A weak pull towards the searched slope keeps short trunks from tilting.
-    const double pull = s * 40;
-    const double det = s * (srr + pull) - sr * sr;
+    const double w = s.w, pull = w * 40;
+    const double det = w * (s.row_row + pull) - double{s.row} * s.row;
     if (det <= 0) break;
-    const double slope = (s * (srp + pull * line.slope) - sr * sp) / det;
-    fitted = {static_cast<float>((sp - slope * sr) / s), static_cast<float>(slope)};
-    scatter = static_cast<float>(std::sqrt(se / s));
-    slope_variance = static_cast<float>(std::max(0.04, se / s) * s / det * s / std::max(4, n));
+    const double turn =
+        (w * (s.row_error + pull * (line.slope - fitted.slope)) - double{s.row} * s.error) / det;
+    fitted.column += static_cast<float>((s.error - turn * s.row) / w);
+    fitted.slope += static_cast<float>(turn);
+    scatter = std::sqrt(s.error_error / s.w);
+    slope_variance = static_cast<float>(std::max(0.04, s.error_error / w) * w / det * w /
+                                        std::max(4, places.found));
   }
   if (std::abs(fitted.slope) < 0.12F && std::abs(fitted.column - line.column) < 6) line = fitted;
   return {scatter, slope_variance};
 }
 
-void EdgeFitter::judge(const Bands& bands, const TrunkShape& shape, Extent extent,
-                       EdgeFit& fit) const {
-  const int flank = std::clamp(static_cast<int>(0.25F * shape.width()), 2, 6);
-  const float sign = shape.dark ? 1.0F : -1.0F;
-  std::array<float, 2> sum{}, above{};
-  int below_count = 0, above_count = 0, agree = 0, agree_above = 0;
-  for (int band = extent.first; band < extent.last; ++band) {
-    const float row = row_of(band) - shape.foot;
-    const float places[2] = {shape.left + shape.left_slope * row,
-                             shape.right + shape.right_slope * row};
-    float r[2];
-    for (int e = 0; e < 2; ++e) {
-      const float value = response(bands.sum(band), nearest(places[e]), flank);
-      r[e] = std::clamp((e == 0 ? -sign : sign) * value / kContrast, -1.0F, 1.0F);
-    }
-    if (band < horizon_band_) {
-      ++above_count;
-      for (int e = 0; e < 2; ++e) above[e] += std::abs(r[e]);
-      agree_above += std::min(std::abs(r[0]), std::abs(r[1])) > 0.3F;
-    } else {
-      ++below_count;
-      for (int e = 0; e < 2; ++e) sum[e] += r[e];
-      agree += std::min(r[0], r[1]) > 0.25F;
-    }
-  }
+void EdgeFitter::judge(const EdgeBands& bands, const TrunkShape& shape, EdgeFit& fit) const {
+  const float full = (shape.dark ? kContrast : -kContrast) * static_cast<float>(bands.flank);
+  const EdgeResponses r =
+      respond_along(bands, {shape.left, shape.left_slope}, {shape.right, shape.right_slope}, full);
+  const int above = std::clamp(bands.horizon, 0, bands.count);
   const auto share = [](auto value, int n) {
     return n > 0 ? static_cast<float>(value) / static_cast<float>(n) : 0.0F;
   };
-  fit.contrast_left = share(sum[0], below_count);
-  fit.contrast_right = share(sum[1], below_count);
-  fit.above_left = share(above[0], above_count);
-  fit.above_right = share(above[1], above_count);
-  fit.agreement = share(agree, below_count);
-  fit.agreement_above = share(agree_above, above_count);
-  fit.bands = extent.count();
+  fit.contrast_left = share(r.below[0], bands.count - above);
+  fit.contrast_right = share(r.below[1], bands.count - above);
+  fit.above_left = share(r.above[0], above);
+  fit.above_right = share(r.above[1], above);
+  fit.agreement = share(r.agree_below, bands.count - above);
+  fit.agreement_above = share(r.agree_above, above);
+  fit.bands = bands.count;
 }
 
 EdgeFitter::Extent EdgeFitter::extent(const Bands& bands, float left, float width,
@@ -193,7 +134,7 @@ EdgeFitter::Extent EdgeFitter::extent(const Bands& bands, float left, float widt
   const float flare = std::min(0.5F * width, 0.3F * foot);
   Extent extent;
   extent.last = std::clamp(static_cast<int>((foot - flare) / Bands::kRows), 0, bands.count());
-  extent.first = std::max(first_band(left, left + width), extent.last - EdgeWindow::kMostBands);
+  extent.first = std::max(first_band(left, left + width), extent.last - kMostEdgeBands);
   return extent;
 }
 
@@ -204,17 +145,9 @@ bool EdgeFitter::fit(const Bands& bands, const Candidate& c, TrunkShape& shape,
   const int flank = std::clamp(static_cast<int>(0.3F * c.width), 2, 8);
   const int reach = std::min(10, static_cast<int>(2 + 0.2F * c.width));
   const int sign = c.dark ? 1 : -1;
-  Starts starts;
-  for (int band = straight.first; band < straight.last; ++band) {
-    for (int s = 0; s < EdgeWindow::kSlopes; ++s) {
-      const int shift = nearest(slope_of(s) * (row_of(band) - c.foot));
-      constexpr int kMiddle = (EdgeWindow::kColumns - EdgeWindow::kPlaces) / 2;
-      starts[band - straight.first][s] =
-          static_cast<std::uint8_t>(std::clamp(kMiddle + shift, 0, 2 * kMiddle));
-    }
-  }
-  const Line left = search(bands, {c.left, 0}, starts, straight, flank, reach, -sign);
-  const Line right = search(bands, {c.left + c.width, 0}, starts, straight, flank, reach, sign);
+  const EdgeBands edges = along(bands, straight, c.foot, flank);
+  const EdgeLine left = search(edges, c.left, reach, -sign);
+  const EdgeLine right = search(edges, c.left + c.width, reach, sign);
   if (right.column - left.column < 2.5F) return false;
   shape = {.foot = c.foot,
            .left = left.column,
@@ -274,11 +207,12 @@ int EdgeFitter::other_feet(const Bands& bands, const TrunkShape& shape,
 
 void EdgeFitter::refine(const Bands& bands, TrunkShape& shape, EdgeFit& fit) const {
   const Extent straight = extent(bands, shape.left, shape.width(), shape.foot);
-  const int flank = std::clamp(static_cast<int>(0.2F * shape.width()), 2, 5);
+  const EdgeBands edges =
+      along(bands, straight, shape.foot, std::clamp(static_cast<int>(0.2F * shape.width()), 2, 5));
   const int sign = shape.dark ? 1 : -1;
-  Line left{shape.left, shape.left_slope}, right{shape.right, shape.right_slope};
-  const Placed l = place(bands, left, shape.foot, straight, flank, -sign);
-  const Placed r = place(bands, right, shape.foot, straight, flank, sign);
+  EdgeLine left{shape.left, shape.left_slope}, right{shape.right, shape.right_slope};
+  const Placed l = place(edges, left, -sign);
+  const Placed r = place(edges, right, sign);
   if (right.column - left.column > 2.5F) {
     shape.left = left.column;
     shape.left_slope = left.slope;
@@ -288,7 +222,8 @@ void EdgeFitter::refine(const Bands& bands, TrunkShape& shape, EdgeFit& fit) con
   fit.scatter_left = l.scatter;
   fit.scatter_right = r.scatter;
   fit.slope_sigma = 0.5F * std::sqrt(l.slope_variance + r.slope_variance);
-  judge(bands, shape, straight, fit);
+  const int flank = std::clamp(static_cast<int>(0.25F * shape.width()), 2, 6);
+  judge(along(bands, straight, shape.foot, flank), shape, fit);
 }
 
 }  // namespace bole

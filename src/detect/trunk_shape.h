@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 
@@ -59,24 +60,18 @@ class EdgeFitter {
   int first_band(float left, float right) const;
 
  private:
-  struct Line {
-    float column = 0, slope = 0;  // at the foot; columns a row
-  };
   struct Placed {
     float scatter = 0, slope_variance = 1;
   };
   struct Extent {
     int first = 0, last = 0;  // bands
-    int count() const { return last - first; }
+    int count() const { return std::max(0, last - first); }
   };
   // What of a trunk is straight: from the upper border to above the root flare.
   Extent extent(const Bands& bands, float left, float width, float foot) const;
-  using Starts = std::array<std::array<std::uint8_t, EdgeWindow::kSlopes>, EdgeWindow::kMostBands>;
-  Line search(const Bands& bands, Line start, const Starts& starts, Extent extent, int flank,
-              int reach, int sign) const;
-  Placed place(const Bands& bands, Line& line, float foot, Extent extent, int flank,
-               int sign) const;
-  void judge(const Bands& bands, const TrunkShape& shape, Extent extent, EdgeFit& fit) const;
+  EdgeBands along(const Bands& bands, Extent extent, float foot, int flank) const;
+  Placed place(const EdgeBands& bands, EdgeLine& line, int sign) const;
+  void judge(const EdgeBands& bands, const TrunkShape& shape, EdgeFit& fit) const;
 
   int width_, horizon_band_;
   std::vector<int> first_seen_;  // band, for each column

@@ -1,38 +1,120 @@
 #include <gtest/gtest.h>
+#include <hwy/highway.h>
 
+#include <string>
 #include <vector>
 
+#include "detect/band_kernels.h"
+#include "detect/bands.h"
 #include "detect/dense_layer.h"
 #include "detect/edge_kernels.h"
+#include "detect/edge_search.h"
+#include "detect/grid_kernels.h"
+#include "detect/strip_kernels.h"
 #include "detect/template_kernels.h"
 #include "simulate/noise.h"
 
 namespace bole {
 namespace {
 
-std::vector<std::int32_t> running_sums(int count, simulate::Random& random) {
-  std::vector<std::int32_t> sums(count);
-  std::int32_t total = 0;
+// The kernels of one instruction set after the other.
+class Kernels : public testing::TestWithParam<std::int64_t> {
+ protected:
+  Kernels() { choose(GetParam()); }
+  ~Kernels() override { choose(0); }
+
+ private:
+  static void choose(std::int64_t target) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(All, Kernels, testing::ValuesIn(hwy::SupportedAndGeneratedTargets()),
+                         [](const auto& target) {
+                           return std::string(hwy::TargetName(target.param));
+                         });
+
+std::vector<std::uint16_t> running_sums(int count, simulate::Random& random) {
+  std::vector<std::uint16_t> sums(count);
+  std::uint16_t total = 0;
   for (auto& sum : sums) {
     sum = total;
-    total += static_cast<int>(random.uniform(500, 1430));
+    total = static_cast<std::uint16_t>(total + static_cast<int>(random.uniform(532, 1426)));
   }
   return sums;
 }
 
-TEST(TemplateKernels, RespondAsThePlainLoops) {
+// Bands in which an edge can be made out here and there.
+struct RoughBands {
+  static constexpr int kCount = 61, kPitch = 700;
+  std::vector<std::uint16_t> sums;
+
+  explicit RoughBands(std::uint64_t seed) {
+    simulate::Random random(seed);
+    for (int band = 0; band < kCount; ++band) {
+      std::uint16_t total = 0;
+      for (int x = 0; x < kPitch; ++x) {
+        sums.push_back(total);
+        const float level = x > 300 + band / 4 ? 1000.0F : 940.0F;
+        total = static_cast<std::uint16_t>(total + static_cast<int>(level + 60 * random.normal()));
+      }
+    }
+  }
+  EdgeBands bands(int flank) const {
+    return {.sums = sums.data(),
+            .pitch = kPitch,
+            .count = kCount,
+            .horizon = 23,
+            .first_row = -230.5F,
+            .row_step = 4,
+            .flank = flank};
+  }
+};
+
+TEST_P(Kernels, SumBandsAsThePlainLoops) {
+  simulate::Random random(5);
+  for (const int width : {7, 64, 333}) {
+    std::vector<std::uint8_t> pixels(4 * width);
+    for (auto& pixel : pixels) pixel = static_cast<std::uint8_t>(random.uniform(0, 255.9F));
+    const std::uint8_t* rows[4];
+    for (int i = 0; i < 4; ++i) rows[i] = pixels.data() + i * width;
+    std::vector<std::uint16_t> fast(width), plain(width), shifted(width), shifted_plain(width);
+    sum_four_rows(rows, width, fast.data());
+    sum_four_rows_plain(rows, width, plain.data());
+    EXPECT_EQ(fast, plain);
+    shift_sums(fast.data(), width, 65000, shifted.data());
+    shift_sums_plain(fast.data(), width, 65000, shifted_plain.data());
+    EXPECT_EQ(shifted, shifted_plain);
+  }
+}
+
+TEST_P(Kernels, RespondToEdgesAsThePlainLoops) {
   simulate::Random random(1);
   const auto sums = running_sums(4000, random);
   for (const auto& [flank, step] : {std::pair(2, 1), {5, 1}, {8, 2}, {18, 4}, {28, 4}}) {
     std::vector<std::int16_t> fast(1000 / step + kTemplateChunk), plain(fast.size());
-    const float scale = 64.0F / (51.2F * static_cast<float>(flank));
-    edge_responses(sums.data() + 300, flank, step, scale, 1000 / step, fast.data());
-    edge_responses_plain(sums.data() + 300, flank, step, scale, 1000 / step, plain.data());
+    const auto factor = static_cast<std::uint16_t>(65536 * 64 / 51.2 / flank);
+    edge_responses(sums.data() + 300, flank, step, factor, 1000 / step, fast.data());
+    edge_responses_plain(sums.data() + 300, flank, step, factor, 1000 / step, plain.data());
     for (int i = 0; i < 1000 / step; ++i) ASSERT_EQ(fast[i], plain[i]) << flank << " at " << i;
   }
 }
 
-TEST(TemplateKernels, SumColumnsAsThePlainLoops) {
+TEST_P(Kernels, FindPeaksAsThePlainLoops) {
+  simulate::Random random(6);
+  std::vector<std::int16_t> evidence(1000);
+  for (auto& value : evidence) value = static_cast<std::int16_t>(random.uniform(0, 90));
+  for (const int reach : {1, 2, 9}) {
+    std::vector<int> fast(777), plain(777);
+    fast.resize(find_peaks(evidence.data() + 20, 777, 64, reach, fast.data()));
+    plain.resize(find_peaks_plain(evidence.data() + 20, 777, 64, reach, plain.data()));
+    EXPECT_EQ(fast, plain);
+    EXPECT_GT(fast.size(), 5U);
+  }
+}
+
+TEST_P(Kernels, SumColumnsAsThePlainLoops) {
   simulate::Random random(2);
   constexpr int kBands = 97, kCount = 333, kPitch = 600;
   std::vector<std::int16_t> responses(kBands * kPitch);
@@ -59,42 +141,131 @@ TEST(TemplateKernels, SumColumnsAsThePlainLoops) {
       ASSERT_EQ(results[k][i], results[4 + k][i]) << k << " at " << i;
 }
 
-TEST(DenseLayer, AddsAsThePlainLoops) {
+TEST_P(Kernels, AddLayersAsThePlainLoops) {
   simulate::Random random(4);
   std::vector<float> in(205), weights(205 * 96), fast(96, 0.5F), plain(96, 0.5F);
   for (float& value : in) value = random.normal();
   for (float& weight : weights) weight = random.normal();
-  for (const int units : {48, 96}) {
+  for (const int units : {8, 48, 96}) {
     add_dense(in.data(), 205, weights.data(), units, fast.data());
     add_dense_plain(in.data(), 205, weights.data(), units, plain.data());
     EXPECT_EQ(fast, plain);
   }
 }
 
-TEST(EdgeKernels, SumEdgesAsThePlainLoops) {
-  simulate::Random random(3);
-  constexpr int kBands = 40, kPitch = 300;
-  std::vector<std::int32_t> sums;
-  for (int band = 0; band < kBands; ++band) {
-    const auto row = running_sums(kPitch, random);
-    sums.insert(sums.end(), row.begin(), row.end());
+TEST_P(Kernels, StandardiseAsThePlainLoop) {
+  simulate::Random random(7);
+  std::vector<float> in(205), mean(205), scale(205), fast(205), plain(205);
+  for (auto* values : {&in, &mean, &scale})
+    for (float& value : *values) value = 3 * random.normal();
+  standardise(in.data(), 205, mean.data(), scale.data(), 4, fast.data());
+  standardise_plain(in.data(), 205, mean.data(), scale.data(), 4, plain.data());
+  EXPECT_EQ(fast, plain);
+}
+
+TEST_P(Kernels, FindEdgesAsThePlainLoops) {
+  for (int seed = 0; seed < 40; ++seed) {
+    const RoughBands rough(seed);
+    const EdgeBands bands = rough.bands(2 + seed % 7);
+    const EdgeSearch search{.first_column = 280 + seed % 30,
+                            .reach = 2 + seed % 9,
+                            .slope_step = 0.015F,
+                            .sign = seed % 5 == 0 ? -1 : 1,
+                            .limit = 56};
+    EXPECT_EQ(find_edge(bands, search), find_edge_plain(bands, search)) << seed;
   }
-  std::array<std::array<std::uint8_t, EdgeWindow::kSlopes>, EdgeWindow::kMostBands> starts{};
-  for (auto& band : starts)
-    for (auto& start : band) start = static_cast<std::uint8_t>(random.uniform(0, 32.9F));
-  for (const int flank : {2, 5, 8}) {
-    const EdgeWindow window{.sums = sums.data() + 100,
-                            .pitch = kPitch,
-                            .bands = kBands,
-                            .horizon = 13,
-                            .flank = flank,
-                            .sign = flank == 5 ? -1 : 1,
-                            .limit = 56,
-                            .starts = &starts};
-    EdgeTotals fast, plain;
-    sum_edges(window, fast);
-    sum_edges_plain(window, plain);
-    EXPECT_EQ(fast, plain);
+}
+
+TEST_P(Kernels, PlaceEdgesAsThePlainLoops) {
+  for (const int flank : {2, 3, 5}) {
+    const RoughBands rough(flank);
+    const EdgeLine line{316, 0.06F};
+    EdgePlaces fast, plain;
+    place_edge(rough.bands(flank), line, 1, 9 * flank, 300, fast);
+    place_edge_plain(rough.bands(flank), line, 1, 9 * flank, 300, plain);
+    EXPECT_EQ(fast.found, plain.found);
+    EXPECT_GT(fast.found, 20);
+    ASSERT_EQ(fast.count, plain.count);
+    for (int i = 0; i < fast.count; ++i) {
+      ASSERT_EQ(fast.weight[i], plain.weight[i]) << i;
+      if (fast.weight[i] == 0) continue;
+      ASSERT_EQ(fast.row[i], plain.row[i]) << i;
+      ASSERT_EQ(fast.column[i], plain.column[i]) << i;
+    }
+    const LineSums sums = sum_places(fast, line, 5), same = sum_places_plain(plain, line, 5);
+    EXPECT_EQ(sums.w, same.w);
+    EXPECT_EQ(sums.row, same.row);
+    EXPECT_EQ(sums.row_row, same.row_row);
+    EXPECT_EQ(sums.error, same.error);
+    EXPECT_EQ(sums.row_error, same.row_error);
+    EXPECT_EQ(sums.error_error, same.error_error);
+  }
+}
+
+TEST_P(Kernels, RespondAlongEdgesAsThePlainLoops) {
+  const RoughBands rough(1);
+  const EdgeBands bands = rough.bands(4);
+  const EdgeLine left{280, 0.02F}, right{316, 0.06F};
+  const EdgeResponses fast = respond_along(bands, left, right, 225);
+  const EdgeResponses plain = respond_along_plain(bands, left, right, 225);
+  EXPECT_EQ(fast.below, plain.below);
+  EXPECT_EQ(fast.above, plain.above);
+  EXPECT_EQ(fast.agree_below, plain.agree_below);
+  EXPECT_EQ(fast.agree_above, plain.agree_above);
+}
+
+TEST_P(Kernels, SumCellsAsThePlainLoops) {
+  const RoughBands rough(2);
+  constexpr int kCoarse = RoughBands::kPitch / Bands::kCoarse;
+  std::vector<std::int32_t> coarse;
+  for (int band = 0; band < RoughBands::kCount; ++band) {
+    const std::uint16_t* sums = rough.sums.data() + band * RoughBands::kPitch;
+    std::int32_t total = 0;
+    for (int k = 0; k < kCoarse; ++k) {
+      coarse.push_back(total);
+      total +=
+          static_cast<std::uint16_t>(sums[(k + 1) * Bands::kCoarse] - sums[k * Bands::kCoarse]);
+    }
+  }
+  const auto columns = [&](float width, bool wide) {
+    CellColumns cells{.sums = rough.sums.data() + 40,
+                      .pitch = RoughBands::kPitch,
+                      .coarse = wide ? coarse.data() : nullptr,
+                      .coarse_pitch = kCoarse,
+                      .margin = 40,
+                      .bands = RoughBands::kCount,
+                      .middle = 300.3F,
+                      .lean = -0.07F,
+                      .borders = {}};
+    for (int i = 0; i < kGridLanes; ++i)
+      cells.borders[i] = width * static_cast<float>(std::min(i, 12) - 6);
+    return cells;
+  };
+  const auto expect_equal = [](const CellSums& a, const CellSums& b) {
+    for (int band = 0; band <= RoughBands::kCount; ++band)
+      for (int i = 0; i < 12; ++i) ASSERT_EQ(a.at[band][i], b.at[band][i]) << band << " " << i;
+  };
+  CellSums fast, plain, whole;
+  for (const float width : {0.6F, 3.3F, 41.7F}) {
+    for (const bool wide : {false, true}) {
+      sum_cells(columns(width, wide), fast);
+      sum_cells_plain(columns(width, wide), plain);
+      expect_equal(fast, plain);
+      if (!wide) whole = fast;
+    }
+    expect_equal(fast, whole);  // narrow cells need no whole sums
+  }
+}
+
+TEST_P(Kernels, SumStripsAsThePlainLoops) {
+  simulate::Random random(8);
+  std::vector<std::uint8_t> row(2000);
+  for (auto& pixel : row) pixel = static_cast<std::uint8_t>(random.uniform(0, 255.9F));
+  for (const int width : {1, 5, 40, 190}) {
+    const int at = 64 + width;
+    const RowStrips strips{{at, at + width + 3, at + 3 * width + 3},
+                           {at + width, at + 2 * width + 3, at + 4 * width + 3}};
+    EXPECT_EQ(sum_strips(row.data(), strips), sum_strips_plain(row.data(), strips)) << width;
   }
 }
 

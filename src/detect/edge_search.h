@@ -1,0 +1,31 @@
+#pragma once
+
+#include "detect/edge_kernels.h"
+
+namespace bole {
+
+/// Where an edge is looked for: lines of kSlopes slopes through kPlaces places at the foot.
+struct EdgeSearch {
+  static constexpr int kColumns = 64;  ///< that are looked at
+  static constexpr int kPlaces = 32;   ///< at which a line may stand: the middle ones
+  static constexpr int kSlopes = 9;
+
+  int first_column = 0;  ///< of the kColumns
+  int reach = 0;         ///< at most kPlaces / 2: places left and right of the middle one
+  float slope_step = 0;  ///< slope s is (s - kSlopes / 2) slope_step
+  int sign = 1;          ///< of the looked-for edge: 1 brightens to the right
+  int limit = 0;         ///< of a band's response, log brightness as in Bands
+};
+struct FoundEdge {
+  int slope = 0, place = 0;
+  friend bool operator==(const FoundEdge&, const FoundEdge&) = default;
+};
+
+/// The line along which the responses sum to the most; a place o off the middle counts 1 - o / 500
+/// of it. A response is sign * bend / flank, rounded towards zero and cut off at the limit; above
+/// the horizon one of the wrong sign counts 11 / 16 of one of the right sign, rounded down. Of
+/// equals the first slope, then the first place.
+FoundEdge find_edge(const EdgeBands& bands, const EdgeSearch& search);
+FoundEdge find_edge_plain(const EdgeBands& bands, const EdgeSearch& search);
+
+}  // namespace bole
