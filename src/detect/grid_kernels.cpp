@@ -1,7 +1,5 @@
 #include "detect/grid_kernels.h"
 
-#include <cstring>
-
 #include "detect/bands.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -16,13 +14,6 @@ namespace {
 
 // What is added before a truncation, so that it rounds down.
 constexpr float kFar = 16384;
-
-// What is read of each band at each border.
-struct Borders {
-  alignas(64) std::uint32_t pair[kMostGridBands][kGridLanes];  // sums of two neighbouring columns
-  alignas(64) std::int32_t high[kMostGridBands][kGridLanes];   // what the first one leaves out
-  alignas(64) float rest[kMostGridBands][kGridLanes];          // of the first column
-};
 
 // The sum to a column, not modulo 2^16.
 std::int32_t whole_sum(const std::int32_t* coarse, std::uint16_t sum, int column) {
@@ -42,57 +33,41 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Ints = hn::CappedTag<std::int32_t, kGridLanes>;
 using Floats = hn::RebindToFloat<Ints>;
 
-HWY_INLINE void ReadBorders(const CellColumns& cells, Borders& borders) {
+// 16 times the sum to each border; modulo 2^20 where only the sums modulo 2^16 are known.
+HWY_INLINE void SumToBorders(const CellColumns& cells, std::int32_t* out) {
   const Floats d;
   const Ints di;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  alignas(64) std::int32_t columns[kGridLanes];
+  const auto low = hn::Set(di, 0xffff), far = hn::Set(di, static_cast<std::int32_t>(kFar));
+  const auto half = hn::Set(d, 0.5F), parts = hn::Set(d, float{CellSums::kParts});
   for (int band = 0; band < cells.bands; ++band) {
     const auto middle = hn::Set(d, cells.middle + cells.lean * static_cast<float>(band));
-    for (int i = 0; i < kGridLanes; i += lanes) {
+    // Two neighbouring sums at a time.
+    const auto* pairs = reinterpret_cast<const std::int32_t*>(cells.sums + band * cells.pitch);
+    for (int i = 0; i < kGridLanes; i += static_cast<int>(hn::Lanes(d))) {
       const auto x = hn::Add(middle, hn::Load(d, cells.borders.data() + i));
-      const auto whole = hn::Sub(hn::ConvertTo(di, hn::Add(x, hn::Set(d, kFar))),
-                                 hn::Set(di, static_cast<std::int32_t>(kFar)));
-      hn::Store(whole, di, columns + i);
-      hn::Store(hn::Sub(x, hn::ConvertTo(d, whole)), d, borders.rest[band] + i);
+      const auto column = hn::Sub(hn::ConvertTo(di, hn::Add(x, hn::Set(d, kFar))), far);
+      const auto pair = hn::GatherOffset(di, pairs, hn::ShiftLeft<1>(column));
+      auto sum = hn::And(pair, low);
+      const auto level = hn::And(hn::Sub(hn::ShiftRight<16>(pair), sum), low);
+      if (cells.coarse) {
+        const auto before =
+            hn::GatherIndex(di, cells.coarse + band * cells.coarse_pitch,
+                            hn::ShiftRight<5>(hn::Add(column, hn::Set(di, cells.margin))));
+        sum = hn::Add(before, hn::And(hn::Sub(sum, before), low));
+      }
+      const auto rest =
+          hn::Mul(hn::Sub(x, hn::ConvertTo(d, column)), hn::Mul(hn::ConvertTo(d, level), parts));
+      hn::Store(hn::Add(hn::ShiftLeft<4>(sum), hn::ConvertTo(di, hn::Add(rest, half))), di,
+                out + band * kGridLanes + i);
     }
-    const std::uint16_t* sums = cells.sums + band * cells.pitch;
-    for (int i = 0; i < kGridLanes; ++i)
-      std::memcpy(&borders.pair[band][i], sums + columns[i], sizeof(std::uint32_t));
-    if (!cells.coarse) continue;
-    const std::int32_t* coarse = cells.coarse + band * cells.coarse_pitch;
-    for (int i = 0; i < kGridLanes; ++i) {
-      const std::uint16_t sum = sums[columns[i]];
-      borders.high[band][i] = whole_sum(coarse, sum, columns[i] + cells.margin) - sum;
-    }
-  }
-}
-
-// 16 times the sum to each border; modulo 2^20 where only the sums modulo 2^16 are known.
-HWY_INLINE void SumToBorders(const CellColumns& cells, const Borders& borders, std::int32_t* out) {
-  const Floats d;
-  const Ints di;
-  const hn::RebindToUnsigned<Ints> du;
-  const auto low = hn::Set(di, 0xffff);
-  const auto half = hn::Set(d, 0.5F), parts = hn::Set(d, float{CellSums::kParts});
-  for (int k = 0; k < cells.bands * kGridLanes; k += static_cast<int>(hn::Lanes(d))) {
-    const auto pair = hn::Load(du, borders.pair[0] + k);
-    const auto first = hn::And(hn::BitCast(di, pair), low);
-    const auto second = hn::BitCast(di, hn::ShiftRight<16>(pair));
-    const auto level = hn::ConvertTo(d, hn::And(hn::Sub(second, first), low));
-    const auto rest = hn::Mul(hn::Load(d, borders.rest[0] + k), hn::Mul(level, parts));
-    const auto sum = cells.coarse ? hn::Add(first, hn::Load(di, borders.high[0] + k)) : first;
-    hn::Store(hn::Add(hn::ShiftLeft<4>(sum), hn::ConvertTo(di, hn::Add(rest, half))), di, out + k);
   }
 }
 
 void SumCells(const CellColumns& cells, CellSums& sums) {
-  static_assert(CellSums::kParts == 1 << 4);
+  static_assert(CellSums::kParts == 1 << 4 && Bands::kCoarse == 1 << 5);
   const Ints di;
-  Borders borders;
   alignas(64) std::int32_t to_borders[kMostGridBands * kGridLanes + 1];
-  ReadBorders(cells, borders);
-  SumToBorders(cells, borders, to_borders);
+  SumToBorders(cells, to_borders);
   to_borders[cells.bands * kGridLanes] = 0;  // read beside the last cell
   const auto known = hn::Set(di, cells.coarse ? -1 : 0xfffff);
   for (int i = 0; i < kGridLanes; i += static_cast<int>(hn::Lanes(di))) {

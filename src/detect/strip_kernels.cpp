@@ -35,6 +35,18 @@ std::uint64_t SumStrips(const std::uint8_t* row, const RowStrips& strips) {
   return hn::GetLane(hn::SumOfLanes(d64, sums));
 }
 
+int SumPixels(const std::uint8_t* pixels, int count) {
+  const hn::ScalableTag<std::uint8_t> d;
+  const hn::Repartition<std::uint64_t, decltype(d)> d64;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  auto sums = hn::Zero(d64);
+  int x = 0;
+  for (; x + lanes <= count; x += lanes)
+    sums = hn::Add(sums, hn::SumsOf8(hn::LoadU(d, pixels + x)));
+  return static_cast<int>(hn::GetLane(hn::SumOfLanes(d64, sums))) +
+         std::accumulate(pixels + x, pixels + count, 0);
+}
+
 }  // namespace bole::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -42,6 +54,11 @@ HWY_AFTER_NAMESPACE();
 namespace bole {
 
 HWY_EXPORT(SumStrips);
+HWY_EXPORT(SumPixels);
+
+int sum_pixels(const std::uint8_t* pixels, int count) {
+  return HWY_DYNAMIC_DISPATCH(SumPixels)(pixels, count);
+}
 
 std::array<int, RowStrips::kCount> sum_strips(const std::uint8_t* row, const RowStrips& strips) {
   const std::uint64_t sums = HWY_DYNAMIC_DISPATCH(SumStrips)(row, strips);

@@ -5,6 +5,9 @@
 
 namespace bole {
 
+/// The sum of `count` pixels.
+int sum_pixels(const std::uint8_t* pixels, int count);
+
 /// Three strips of a row of pixels, from left to right: columns [first, last) each.
 struct RowStrips {
   static constexpr int kCount = 3;

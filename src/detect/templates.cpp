@@ -28,7 +28,7 @@ int Templates::margin(const DetectorSetup& setup) {
   return widest_template(setup) * 3 / 2 + 4 * kTemplateChunk + 48;
 }
 
-Templates::Templates(const DetectorSetup& setup, int most_candidates)
+Templates::Templates(const DetectorSetup& setup, const Bands& bands, int most_candidates)
     : columns_(setup.panorama.columns),
       width_(setup.panorama.width),
       bands_(setup.panorama.rows / Bands::kRows),
@@ -43,12 +43,7 @@ Templates::Templates(const DetectorSetup& setup, int most_candidates)
     return std::clamp((horizon + focal_ * down) / Bands::kRows, 0.0, static_cast<double>(bands_));
   };
 
-  for (const int flank : {2, 3, 5, 8, 12, 18, kWidestFlank}) {
-    const int step = flank >= 18 ? 4 : flank >= 8 ? 2 : 1;
-    const int pitch = (width_ + widest_ + 8) / step + 2 * kTemplateChunk;
-    flanks_.push_back({flank, step, pitch});
-    responses_.resize(std::max(responses_.size(), static_cast<std::size_t>(bands_) * pitch));
-  }
+  for (const int width : {2, 3, 5, 8, 12, 18, kWidestFlank}) add_flank(bands, width);
   const Search& search = setup.search;
   const double narrowest =
       std::max(kNarrowest, 0.85 * focal_ * angular_width(search.diameter.low, search.range.high));
@@ -85,35 +80,47 @@ Templates::Templates(const DetectorSetup& setup, int most_candidates)
       peaks[i].foot.resize(n);
     }
   }
-  for (int band = 0; band < bands_; ++band) {
-    const auto first =
-        setup.seen.pixels.begin() + static_cast<std::ptrdiff_t>(band) * Bands::kRows * width_;
-    const bool whole =
-        std::find(first, first + Bands::kRows * width_, 0) == first + Bands::kRows * width_;
-    wholly_seen_.push_back(whole && wraps_);
-  }
   places_.resize(width_);
   found_.reserve(20000);
   kept_.reserve(most_);
 }
 
-void Templates::respond(const Bands& bands, const Flank& flank) {
+void Templates::add_flank(const Bands& bands, int width) {
   static_assert(kWidestFlank <= Bands::kMostFlank);
-  const int k = flank.width;
-  const auto factor = static_cast<std::uint16_t>(
-      std::lround(65536 * kFullResponse / (kContrast * Bands::kScale * k)));
-  const int n = std::min(flank.pitch - kTemplateChunk,
-                         (width_ + bands.margin() - k) / flank.step - kTemplateChunk);
+  const int step = width >= 18 ? 4 : width >= 8 ? 2 : 1;
+  Flank flank{.width = width,
+              .step = step,
+              .pitch = (width_ + widest_ + 8) / step + 2 * kTemplateChunk,
+              .unseen = {}};
+  flank.count = std::min(flank.pitch - kTemplateChunk,
+                         (width_ + bands.margin() - width) / step - kTemplateChunk);
   for (int band = 0; band < bands_; ++band) {
-    std::int16_t* response = responses_.data() + static_cast<std::size_t>(band) * flank.pitch;
-    edge_responses(bands.sum(band), k, flank.step, factor, n, response);
-    if (wholly_seen_[band]) continue;
     const std::uint8_t* seen = bands.seen(band);
-    for (int i = 0; i < n; ++i) {
-      const int x = i * flank.step;
-      if ((seen[x - k] & seen[x - 1] & seen[x] & seen[x + k - 1]) == 0) response[i] = 0;
+    for (int i = 0; i < flank.count; ++i) {
+      const int x = i * step;
+      if (seen[x - width] & seen[x - 1] & seen[x] & seen[x + width - 1]) continue;
+      if (!flank.unseen.empty() && flank.unseen.back().band == band &&
+          flank.unseen.back().last == i) {
+        ++flank.unseen.back().last;
+      } else {
+        flank.unseen.push_back({band, i, i + 1});
+      }
     }
   }
+  responses_.resize(std::max(responses_.size(), static_cast<std::size_t>(bands_) * flank.pitch));
+  flanks_.push_back(std::move(flank));
+}
+
+void Templates::respond(const Bands& bands, const Flank& flank) {
+  const auto factor = static_cast<std::uint16_t>(
+      std::lround(65536 * kFullResponse / (kContrast * Bands::kScale * flank.width)));
+  const auto responses = [&](int band) {
+    return responses_.data() + static_cast<std::size_t>(band) * flank.pitch;
+  };
+  for (int band = 0; band < bands_; ++band)
+    edge_responses(bands.sum(band), flank.width, flank.step, factor, flank.count, responses(band));
+  for (const Unseen& run : flank.unseen)
+    std::fill(responses(run.band) + run.first, responses(run.band) + run.last, std::int16_t{0});
 }
 
 void Templates::accumulate(int size_index) {

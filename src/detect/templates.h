@@ -32,7 +32,8 @@ class Templates {
   /// The margin that Bands needs for these templates and whatever reads around a candidate.
   static int margin(const DetectorSetup& setup);
 
-  Templates(const DetectorSetup& setup, int most_candidates);
+  /// Of `bands` only what is seen and the margin are asked for.
+  Templates(const DetectorSetup& setup, const Bands& bands, int most_candidates);
 
   /// The most evident places, best first; valid until the next call.
   std::span<const Candidate> find(const Bands& bands);
@@ -44,16 +45,22 @@ class Templates {
     double rank_factor = 1;
     int first_foot = 0, last_foot = 0;  // bands: the foot is the lower border of one of them
   };
+  struct Unseen {  // evaluated columns [first, last) of a band where a mean meets the mask
+    int band = 0, first = 0, last = 0;
+  };
   struct Flank {
     int width = 0;  // columns of the means on either side of an edge
     int step = 0;   // every how many columns it is evaluated
     int pitch = 0;  // evaluated columns a band
+    int count = 0;  // of them asked for
+    std::vector<Unseen> unseen;
   };
   struct Peaks {  // best sum over all feet, for every left edge; evidence begins `pad_` before them
     std::vector<std::int16_t> evidence;
     std::vector<std::int16_t> foot;
   };
 
+  void add_flank(const Bands& bands, int width);
   void respond(const Bands& bands, const Flank& flank);
   void accumulate(int size_index);
   void pad(std::int16_t* evidence, int count) const;
@@ -63,7 +70,6 @@ class Templates {
 
   int columns_, width_, bands_, horizon_band_, widest_, pad_;
   std::size_t most_;
-  std::vector<std::uint8_t> wholly_seen_;  // bands without a masked pixel
   bool wraps_;
   double focal_;
   std::vector<Size> sizes_;

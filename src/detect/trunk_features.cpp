@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "detect/grid_kernels.h"
-#include "detect/strip_kernels.h"
 
 namespace bole {
 namespace {
@@ -116,39 +115,40 @@ float FeatureReader::read_grid(const Bands& bands, const TrunkShape& shape, int 
   return spread;
 }
 
-// The sum of a row's pixels, continued round the turn or by the border's.
-int FeatureReader::sum_round(const std::uint8_t* row, int first, int last) const {
-  int sum = 0;
-  for (int x = first; x < last; ++x) {
-    const int round = x < 0 ? x + width_ : x >= width_ ? x - width_ : x;
-    sum += row[std::clamp(wraps_ ? round : x, 0, width_ - 1)];
+// The sums of strips that may lead beyond a border: continued round the turn, or by its pixel.
+std::array<int, RowStrips::kCount> FeatureReader::sum_round(const std::uint8_t* row,
+                                                            const RowStrips& strips) const {
+  std::array<int, RowStrips::kCount> sums{};
+  for (const int turn : {-1, 0, 1}) {
+    const int begin = turn * width_;
+    if (strips.last[2] <= begin || strips.first[0] >= begin + width_) continue;
+    for (int k = 0; k < RowStrips::kCount; ++k) {
+      const int first = std::max(strips.first[k], begin) - begin;
+      const int last = std::min(strips.last[k], begin + width_) - begin;
+      const int n = std::max(0, last - first);
+      if (turn == 0 || wraps_) {
+        if (n > 0) sums[k] += sum_pixels(row + first, n);
+      } else {
+        sums[k] += n * row[turn < 0 ? 0 : width_ - 1];
+      }
+    }
   }
-  return sum;
+  return sums;
 }
 
 // Mean log brightness left of the trunk, in its core and right of it.
-FeatureReader::Strips FeatureReader::strips(const PanoramaView& panorama, const TrunkShape& shape,
-                                            int row) const {
-  const float w = shape.width();
-  const float gap = 0.5F * w + std::max(1.0F, 0.1F * w), flank = std::max(2.0F, 0.5F * w);
-  const float middle =
-      shape.centre() + shape.slope() * (static_cast<float>(row) + 0.5F - shape.foot);
-  const float from[F::kStrips] = {middle - gap - flank, middle - 0.28F * w, middle + gap};
-  const float to[F::kStrips] = {middle - gap, middle + 0.28F * w, middle + gap + flank};
-  RowStrips bounds;
-  for (int k = 0; k < F::kStrips; ++k) {
-    bounds.first[k] = nearest(from[k]);
-    bounds.last[k] = std::max(bounds.first[k] + 1, nearest(to[k]));
-  }
+FeatureReader::Strips FeatureReader::strips(const PanoramaView& panorama, int row, float middle,
+                                            float width) const {
+  const float gap = 0.5F * width + std::max(1.0F, 0.1F * width);
+  const float far = gap + std::max(2.0F, 0.5F * width), core = 0.28F * width;
+  RowStrips bounds{{nearest(middle - far), nearest(middle - core), nearest(middle + gap)},
+                   {nearest(middle - gap), nearest(middle + core), nearest(middle + far)}};
+  bounds.last[1] = std::max(bounds.last[1], bounds.first[1] + 1);
   const std::uint8_t* pixels = panorama.row(row);
-  std::array<int, F::kStrips> sums;
-  if (bounds.first[0] >= 0 && bounds.last[2] <= width_ &&
-      pixels - panorama.pixels + bounds.first[0] >= RowStrips::kUnderread) {
-    sums = sum_strips(pixels, bounds);
-  } else {
-    for (int k = 0; k < F::kStrips; ++k)
-      sums[k] = sum_round(pixels, bounds.first[k], bounds.last[k]);
-  }
+  const bool within = bounds.first[0] >= 0 && bounds.last[2] <= width_ &&
+                      pixels - panorama.pixels + bounds.first[0] >= RowStrips::kUnderread;
+  const std::array<int, F::kStrips> sums =
+      within ? sum_strips(pixels, bounds) : sum_round(pixels, bounds);
   Strips means;
   for (int k = 0; k < F::kStrips; ++k) {
     const int n = bounds.last[k] - bounds.first[k];
@@ -179,7 +179,10 @@ void FeatureReader::read_foot(const PanoramaView& panorama, const TrunkShape& sh
       const int i = std::clamp(nearest(at), 0, rows_ - 1);
       const float weight = spacing > 1 ? 0.5F : k == 0 ? 1 - (place - high) : place - high;
       auto& [row, means] = known[i & 1];
-      if (row != i) means = strips(panorama, shape, i);
+      if (row != i) {
+        const float below = static_cast<float>(i) + 0.5F - shape.foot;
+        means = strips(panorama, i, shape.centre() + shape.slope() * below, shape.width());
+      }
       row = i;
       for (int strip = 0; strip < F::kStrips; ++strip) lines[j][strip] += weight * means[strip];
     }

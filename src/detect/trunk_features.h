@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "detect/bands.h"
+#include "detect/strip_kernels.h"
 #include "detect/trunk_shape.h"
 
 namespace bole {
@@ -38,8 +39,9 @@ class FeatureReader {
   void read_foot(const PanoramaView& panorama, const TrunkShape& shape, float spread,
                  float* out) const;
   using Strips = std::array<float, TrunkFeatures::kStrips>;
-  Strips strips(const PanoramaView& panorama, const TrunkShape& shape, int row) const;
-  int sum_round(const std::uint8_t* row, int first, int last) const;
+  Strips strips(const PanoramaView& panorama, int row, float middle, float width) const;
+  std::array<int, RowStrips::kCount> sum_round(const std::uint8_t* row,
+                                               const RowStrips& strips) const;
 
   int rows_, width_, last_band_;
   bool wraps_;

@@ -25,7 +25,7 @@ TrunkFinder::TrunkFinder(const DetectorSetup& setup)
       wraps_(setup.panorama.wraps()),
       focal_(setup.panorama.focal()),
       bands_(setup, Templates::margin(setup)),
-      templates_(setup, most_candidates(setup.search)),
+      templates_(setup, bands_, most_candidates(setup.search)),
       fitter_(setup),
       reader_(setup) {
   sights_.reserve(most_candidates(setup.search));
