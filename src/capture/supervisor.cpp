@@ -74,13 +74,9 @@ void Supervisor::open() {
   last_seq_ = -1;
   unused_since_frame_ = 0;
   last_frame_ns_ = clock_.mono_ns();
-  std::string reason = "waiting for the first frame";
-  for (const std::string& refused : source_.refused()) {
-    ++counts_.settings_refused;
-    reason += "; refused: " + refused;
-  }
+  counts_.settings_refused += std::ssize(source_.refused());
   // A stalled camera that was restarted stays stalled until a frame comes.
-  if (state_ != CameraState::stalled) enter(CameraState::opening, reason);
+  if (state_ != CameraState::stalled) enter(CameraState::opening, "waiting for the first frame");
 }
 
 void Supervisor::wait_for_camera(const std::string& reason) {
