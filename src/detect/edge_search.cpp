@@ -35,7 +35,7 @@ float slope_of(const Search& search, int s) {
 }
 
 float share_of(int place) {
-  return 1 - 0.002F * static_cast<float>(std::abs(place - Search::kPlaces / 2));
+  return 1 - 0.03F * static_cast<float>(std::abs(place - Search::kPlaces / 2));
 }
 
 }  // namespace

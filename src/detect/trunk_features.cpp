@@ -201,7 +201,7 @@ void FeatureReader::read_foot(const PanoramaView& panorama, const TrunkShape& sh
 }
 
 void FeatureReader::read(const Bands& bands, const PanoramaView& panorama, const TrunkShape& shape,
-                         const EdgeFit& fit, float evidence, int first_band, F::Values& out) const {
+                         const EdgeFit& fit, int first_band, F::Values& out) const {
   float mean = 0;
   float* values = out.data();
   const float spread = read_grid(bands, shape, first_band, values, &mean);
@@ -217,7 +217,6 @@ void FeatureReader::read(const Bands& bands, const PanoramaView& panorama, const
       std::log(w / 6),
       spread,
       shape.dark ? 1.0F : -1.0F,
-      evidence / 10,
       std::log(std::max(4.0F, shape.foot - top) / w),
       fit.contrast_left,
       fit.contrast_right,

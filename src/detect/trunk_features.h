@@ -18,7 +18,7 @@ struct TrunkFeatures {
   static constexpr int kAcross = 12;    ///< cells across, out to one width beside it
   static constexpr int kFootRows = 16;  ///< fine rows about the foot
   static constexpr int kStrips = 3;     ///< of each: left of the trunk, its core, right of it
-  static constexpr int kNumbers = 20;
+  static constexpr int kNumbers = 19;
   static constexpr int kCount = kHeights * kAcross + kFootRows * kStrips + kNumbers;
   using Values = std::array<float, kCount>;
 };
@@ -31,7 +31,7 @@ class FeatureReader {
   explicit FeatureReader(const DetectorSetup& setup);
 
   void read(const Bands& bands, const PanoramaView& panorama, const TrunkShape& shape,
-            const EdgeFit& fit, float evidence, int first_band, TrunkFeatures::Values& out) const;
+            const EdgeFit& fit, int first_band, TrunkFeatures::Values& out) const;
 
  private:
   float read_grid(const Bands& bands, const TrunkShape& shape, int first_band, float* out,

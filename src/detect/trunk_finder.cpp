@@ -52,10 +52,9 @@ bool TrunkFinder::readable(const TrunkShape& shape) const {
 }
 
 bool TrunkFinder::read(const PanoramaView& panorama, const TrunkShape& shape, const EdgeFit& fit,
-                       float evidence, TrunkFeatures::Values& out) const {
+                       TrunkFeatures::Values& out) const {
   if (!readable(shape)) return false;
-  reader_.read(bands_, panorama, shape, fit, evidence, fitter_.first_band(shape.left, shape.right),
-               out);
+  reader_.read(bands_, panorama, shape, fit, fitter_.first_band(shape.left, shape.right), out);
   return true;
 }
 
@@ -65,7 +64,6 @@ std::span<Trunk> TrunkFinder::find(const PanoramaView& panorama) {
   sights_.clear();
   for (const Candidate& candidate : candidates(panorama)) {
     Sight sight;
-    sight.evidence = candidate.evidence;
     if (!fit(candidate, sight.trunk.shape, sight.trunk.fit)) continue;
     judge(panorama, sight);
     if (sight.judgement.logit >= kWorthOtherFeet) sights_.push_back(sight);
@@ -86,7 +84,7 @@ std::span<Trunk> TrunkFinder::find(const PanoramaView& panorama) {
 
 void TrunkFinder::judge(const PanoramaView& panorama, Sight& sight) const {
   TrunkFeatures::Values features;
-  const bool seen = read(panorama, sight.trunk.shape, sight.trunk.fit, sight.evidence, features);
+  const bool seen = read(panorama, sight.trunk.shape, sight.trunk.fit, features);
   sight.judgement = seen ? bole::judge(features) : Judgement{.logit = kHopeless};
 }
 

@@ -40,14 +40,13 @@ class TrunkFinder {
   /// False, and nothing read, when the outline leads farther out of the panorama than Bands
   /// goes.
   [[nodiscard]] bool read(const PanoramaView& panorama, const TrunkShape& shape, const EdgeFit& fit,
-                          float evidence, TrunkFeatures::Values& out) const;
+                          TrunkFeatures::Values& out) const;
 
  private:
   bool readable(const TrunkShape& shape) const;
   // A trunk as it is first met.
   struct Sight {
     Trunk trunk;
-    float evidence = 0;
     Judgement judgement;
   };
   void judge(const PanoramaView& panorama, Sight& sight) const;

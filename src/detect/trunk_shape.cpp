@@ -13,7 +13,7 @@ constexpr float kSlopeStep = 0.015F;  // columns a row
 constexpr float kContrast = 0.22F * Bands::kScale;
 constexpr float kStrongContrast = 1.2F * Bands::kScale;
 constexpr float kLeastSum = 1.0F;    // of the contrast above another foot, in full bands
-constexpr float kFall = 0.6F;        // by how much it falls below it
+constexpr float kFall = 0.4F;        // by how much it falls below it
 constexpr float kWrongSign = -0.7F;  // what a response of the wrong sign counts above the horizon
 
 float response(const std::uint16_t* sum, int x, int k) {
@@ -143,7 +143,7 @@ bool EdgeFitter::fit(const Bands& bands, const Candidate& c, TrunkShape& shape,
   const Extent straight = extent(bands, c.left, c.width, c.foot);
   if (straight.count() < 3) return false;
   const int flank = std::clamp(static_cast<int>(0.3F * c.width), 2, 8);
-  const int reach = std::min(10, static_cast<int>(2 + 0.2F * c.width));
+  const int reach = std::min(10, static_cast<int>(1 + 0.05F * c.width));
   const int sign = c.dark ? 1 : -1;
   const EdgeBands edges = along(bands, straight, c.foot, flank);
   const EdgeLine left = search(edges, c.left, reach, -sign);

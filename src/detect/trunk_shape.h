@@ -49,7 +49,7 @@ class EdgeFitter {
 
   /// Other rows at which the trunk between these edges may end: where its contrast, summed down the
   /// edges, has a peak and then falls. Best first; returns how many.
-  static constexpr int kOtherFeet = 2;
+  static constexpr int kOtherFeet = 3;
   int other_feet(const Bands& bands, const TrunkShape& shape,
                  std::array<float, kOtherFeet>& feet) const;
 

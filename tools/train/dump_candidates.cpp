@@ -56,28 +56,27 @@ class Dump {
       TrunkShape shape;
       EdgeFit fit;
       if (!finder_.fit(candidate, shape, fit)) continue;
-      put_candidate(shape, fit, candidate.evidence, kept);
+      put_candidate(shape, fit, kept);
       std::array<float, EdgeFitter::kOtherFeet> feet;
       const int count = finder_.other_feet(shape, feet);
-      for (int i = 0; i < count; ++i)
-        put_candidate(ended_at(shape, feet[i]), fit, candidate.evidence, 0.5 * kept);
+      for (int i = 0; i < count; ++i) put_candidate(ended_at(shape, feet[i]), fit, 0.5 * kept);
     }
     for (std::size_t i = 0; i < found_.size(); ++i) put_true(frame_.trunks[i], found_[i]);
   }
 
  private:
   // A candidate, and now and then a shaken twin. Of those that are no trunk the share `kept`.
-  void put_candidate(const TrunkShape& shape, const EdgeFit& fit, float evidence, double kept) {
+  void put_candidate(const TrunkShape& shape, const EdgeFit& fit, double kept) {
     const Label here = label(shape);
     const bool trunk = here.trunk > 0;
     if (trunk) found_[here.which] = shape;
     const auto chance = static_cast<float>(trunk ? 1 : kept);
-    if (random_.chance(chance)) put(shape, fit, evidence, 1 / chance);
+    if (random_.chance(chance)) put(shape, fit, 1 / chance);
     if (random_.chance(0.35F * chance)) {
       TrunkShape shaken = shake(shape, 0.1F, 0.15F, 0.15F);
       EdgeFit shaken_fit = fit;
       finder_.refine(shaken, shaken_fit);
-      put(shaken, shaken_fit, evidence, 0.5F / chance);
+      put(shaken, shaken_fit, 0.5F / chance);
     }
   }
 
@@ -90,21 +89,37 @@ class Dump {
       return;
     const double middle = frame_.geometry.column_of_bearing(trunk.bearing) + 0.5;
     if (middle > frame_.geometry.width) return;
-    for (int i = 0; i < (found ? 3 : 2); ++i) {
-      TrunkShape shape;
-      if (found)
-        shape = *found;
-      else
-        shape.dark = i == 0;
-      shape.foot = static_cast<float>(foot);
-      shape.left = static_cast<float>(middle - width / 2);
-      shape.right = static_cast<float>(middle + width / 2);
-      shape = shake(shape, 0.08F, 0.1F, 0.12F);
+    TrunkShape upright;
+    upright.foot = static_cast<float>(foot);
+    upright.left = static_cast<float>(middle - width / 2);
+    upright.right = static_cast<float>(middle + width / 2);
+    if (found) {
+      upright.left_slope = found->left_slope;
+      upright.right_slope = found->right_slope;
+      upright.dark = found->dark;
+    } else {
+      upright.dark = looks_dark(upright);
+    }
+    for (int i = 0; i < 3; ++i) {
+      TrunkShape shape = shake(upright, 0.08F, 0.1F, 0.12F);
       EdgeFit fit;
       finder_.refine(shape, fit);
       if (!found && fit.agreement + fit.agreement_above < 0.3F) continue;
-      put(shape, fit, random_.uniform(2, 15), 0.4F);
+      put(shape, fit, 0.4F);
     }
+  }
+
+  // Of which polarity a candidate there would be.
+  bool looks_dark(TrunkShape shape) const {
+    float contrast[2];
+    for (const bool dark : {false, true}) {
+      shape.dark = dark;
+      TrunkShape refined = shape;
+      EdgeFit fit;
+      finder_.refine(refined, fit);
+      contrast[dark] = fit.contrast_left + fit.contrast_right;
+    }
+    return contrast[1] >= contrast[0];
   }
 
   TrunkShape shake(const TrunkShape& shape, float centre, float width, float foot) {
@@ -118,11 +133,11 @@ class Dump {
     return shaken;
   }
 
-  void put(const TrunkShape& shape, const EdgeFit& fit, float evidence, float weight) {
+  void put(const TrunkShape& shape, const EdgeFit& fit, float weight) {
     const Label here = label(shape);
     if (here.trunk < 0) return;
     TrunkFeatures::Values features;
-    if (!finder_.read(frame_.view(), shape, fit, evidence, features)) return;
+    if (!finder_.read(frame_.view(), shape, fit, features)) return;
     const float head[kHead] = {static_cast<float>(number_),
                                here.trunk,
                                here.centre_shift,

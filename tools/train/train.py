@@ -17,11 +17,11 @@ import argparse
 import numpy as np
 
 HEAD = 6  # frame, label, three shifts, weight: see dump_candidates.cpp
-HEIGHTS, ACROSS, FOOT_ROWS, STRIPS, NUMBERS = 11, 12, 16, 3, 20  # see trunk_features.h
+HEIGHTS, ACROSS, FOOT_ROWS, STRIPS, NUMBERS = 11, 12, 16, 3, 19  # see trunk_features.h
 GRID = HEIGHTS * ACROSS
 FEATURES = GRID + FOOT_ROWS * STRIPS + NUMBERS
-LEFT_RIGHT_NUMBERS = [(6, 7), (9, 10), (14, 15)]  # that change places in a mirror
-SIDEWAYS_NUMBERS = [19]  # that change sign in a mirror
+LEFT_RIGHT_NUMBERS = [(5, 6), (8, 9), (13, 14)]  # that change places in a mirror
+SIDEWAYS_NUMBERS = [18]  # that change sign in a mirror
 POLARITY_NUMBER = 3  # 1 dark, -1 bright
 HIDDEN, OUTPUTS, LEAK = 96, 7, 0.05
 LIMIT = 4.0  # of a standardised feature
