@@ -84,7 +84,7 @@ HWY_EXPORT(WeightRows);
 HWY_EXPORT(FilterRow);
 
 // A block of the widest vectors there are, 256 bytes each.
-constexpr std::size_t kSpare = 4 * 256 / sizeof(float);
+constexpr std::size_t kSpare = std::size_t{4} * 256 / sizeof(float);
 
 // P2(row) of rows above the image, as a multiple of the first row.
 std::uint32_t first_rows_above(int row) {
