@@ -19,21 +19,24 @@ Bands::Bands(const DetectorSetup& setup, int margin)
       sums_(static_cast<std::size_t>(count_) * pitch_),
       coarse_(static_cast<std::size_t>(count_) * coarse_pitch_),
       seen_(static_cast<std::size_t>(count_) * pitch_) {
-  for (int sum = 0; sum < static_cast<int>(log_.size()); ++sum)
+  for (int sum = 0; sum < static_cast<int>(log_.size()); ++sum) {
     log_[sum] = static_cast<std::uint16_t>(
         std::lround(kScale * std::log(static_cast<double>(sum) / kRows + kBlackLevel)));
+  }
 
   for (int band = 0; band < count_; ++band) {
     std::uint8_t* seen = seen_.data() + static_cast<std::size_t>(band) * pitch_;
     for (int i = 0; i < width_ + 2 * margin_; ++i) {
       int x = i - margin_;
-      if (wraps_)
+      if (wraps_) {
         x = ((x % width_) + width_) % width_;
-      else if (x < 0 || x >= width_)
+      } else if (x < 0 || x >= width_) {
         continue;
+      }
       seen[i] = 1;
-      for (int row = band * kRows; row < (band + 1) * kRows; ++row)
+      for (int row = band * kRows; row < (band + 1) * kRows; ++row) {
         seen[i] &= setup.seen.pixels[static_cast<std::size_t>(row) * width_ + x];
+      }
     }
   }
 }
@@ -55,9 +58,10 @@ void Bands::compute(const PanoramaView& panorama) {
     const std::uint16_t* at = sums - margin_;
     std::int32_t* coarse = coarse_.data() + static_cast<std::size_t>(band) * coarse_pitch_;
     coarse[0] = at[0];
-    for (int k = 1; k * kCoarse < pitch_; ++k)
+    for (int k = 1; k * kCoarse < pitch_; ++k) {
       coarse[k] =
           coarse[k - 1] + static_cast<std::uint16_t>(at[k * kCoarse] - at[(k - 1) * kCoarse]);
+    }
   }
 }
 

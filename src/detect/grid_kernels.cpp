@@ -108,6 +108,8 @@ void sum_cells_plain(const CellColumns& cells, CellSums& sums) {
         const int whole = cells.coarse ? whole_sum(cells.coarse + band * cells.coarse_pitch,
                                                    at[column], column + cells.margin)
                                        : at[column];
+        // The rest is not negative, and std::lround would be a call.
+        // NOLINTNEXTLINE(bugprone-incorrect-roundings)
         return CellSums::kParts * whole + static_cast<int>(rest + 0.5F);
       };
       const int cell = to(cells.borders[i + 1]) - to(cells.borders[i]);

@@ -38,13 +38,15 @@ TiltEstimator::TiltEstimator(double height) : feet_(kWidths) {
   const RangePosterior posterior(height, Search{{0.1, 1000}, {0.001, 100}});
   for (int w = 0; w < kWidths; ++w) {
     const double width = kNarrowest * std::pow(kWidest / kNarrowest, (w + 0.5) / kWidths);
-    for (int i = 0; i < kDowns; ++i)
+    for (int i = 0; i < kDowns; ++i) {
       feet_[w][i] = static_cast<float>(
           posterior.log_likelihood({kHighest + i * kDownStep, kFootSigma, width}));
+    }
   }
-  for (int i = 0; i < kLeans; ++i)
+  for (int i = 0; i < kLeans; ++i) {
     leans_[i] = static_cast<float>(std::log((1 - kCrooked) * normal(i * kLeanStep, kLeanSigma) +
                                             kCrooked * normal(i * kLeanStep, kCrookedSigma)));
+  }
 }
 
 double TiltEstimator::feet(const TiltWitness& witness, const GroundTilt& tilt) const {

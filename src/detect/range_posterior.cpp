@@ -51,8 +51,9 @@ RangePosterior::Points RangePosterior::points(const TrunkSight& sight) const {
   const double uneven = kGroundSigma * std::max(0.0, sight.down) / height_;
   const double sigma = std::hypot(sight.down_sigma, kAttitudeSigma, uneven);
   Points points;
+  constexpr int kMiddle = kEvenSteps / 2;
   for (int i = 0; i < kEvenSteps; ++i) {
-    const double off = kStep * (i - kEvenSteps / 2);
+    const double off = kStep * (i - kMiddle);
     const double down = std::max(sight.down + off * sigma, 1e-4);
     points.log_range[i] = std::log(height_ / (down * (1 - s)));
     const bool real = sight.down + off * sigma > 1e-4;

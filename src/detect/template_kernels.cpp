@@ -184,9 +184,10 @@ void sum_columns_plain(const ColumnSums& s) {
         const int l = -sign * at[0], r = sign * at[s.across];
         const auto joined = [](int a, int b) { return ((a + b) >> 2) + (std::min(a, b) >> 1); };
         int value = joined(l, r) - 19;
-        if (band < s.horizon)
+        if (band < s.horizon) {
           value =
               std::max(((joined(soft(l), soft(r)) - 35) * 13) >> 5, ((joined(l, r) - 24) * 5) >> 3);
+        }
         sum = std::max(0, sum + value);
         if (band + 1 < s.first_foot || sum <= best) continue;
         best = sum;

@@ -48,7 +48,10 @@ Templates::Templates(const DetectorSetup& setup, const Bands& bands, int most_ca
   const double narrowest =
       std::max(kNarrowest, 0.85 * focal_ * angular_width(search.diameter.low, search.range.high));
   int last = 0;
-  for (double w = narrowest; w < widest_; w *= kWidthStep) {
+  const int steps =
+      static_cast<int>(std::ceil(std::log(widest_ / narrowest) / std::log(kWidthStep)));
+  for (int i = 0; i < steps; ++i) {
+    const double w = narrowest * std::pow(kWidthStep, i);
     Size size;
     const auto nearest = [&](double k) {
       return [k](const Flank& a, const Flank& b) {

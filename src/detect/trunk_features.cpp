@@ -72,9 +72,10 @@ float FeatureReader::read_grid(const Bands& bands, const TrunkShape& shape, int 
 
   const float sign = shape.dark ? 1.0F : -1.0F;
   std::array<float, F::kAcross> per_cell;
-  for (int i = 0; i < F::kAcross; ++i)
+  for (int i = 0; i < F::kAcross; ++i) {
     per_cell[i] =
         sign / (float{Bands::kScale * CellSums::kParts} * (kBorders[i + 1] - kBorders[i]) * w);
+  }
   // A place among the bands, from the first one's upper border.
   struct Place {
     int band;
@@ -169,9 +170,9 @@ void FeatureReader::read_foot(const PanoramaView& panorama, const TrunkShape& sh
     int row = -1;
     Strips means;
   } known[2];
+  constexpr int kRowsAbove = F::kFootRows / 2;
   for (int j = 0; j < F::kFootRows; ++j) {
-    const float place =
-        shape.foot + (static_cast<float>(j - F::kFootRows / 2) + 0.5F) * unit - 0.5F;
+    const float place = shape.foot + (static_cast<float>(j - kRowsAbove) + 0.5F) * unit - 0.5F;
     const float spacing = std::max(1.0F, 0.5F * unit);
     const float high = spacing > 1 ? place - 0.5F * spacing : std::floor(place);
     for (int k = 0; k < 2; ++k) {
@@ -189,8 +190,8 @@ void FeatureReader::read_foot(const PanoramaView& panorama, const TrunkShape& sh
   }
   // The trunk's own brightness above the foot is the reference.
   float core = 0;
-  for (int j = 0; j < F::kFootRows / 2; ++j) core += lines[j][1];
-  core /= F::kFootRows / 2;
+  for (int j = 0; j < kRowsAbove; ++j) core += lines[j][1];
+  core /= kRowsAbove;
   const float scale = sign / std::max(spread, kLeastSpread);
   for (int j = 0; j < F::kFootRows; ++j) {
     const auto& s = lines[j];

@@ -27,14 +27,15 @@ int nearest(float x) { return static_cast<int>(x + 16384.5F) - 16384; }
 // The line along which an edge of contrast `sign` stands out most, at most `reach` columns from
 // `column` at the foot.
 EdgeLine search(const EdgeBands& bands, float column, int reach, int sign) {
+  constexpr int kMiddlePlace = EdgeSearch::kPlaces / 2, kUpright = EdgeSearch::kSlopes / 2;
   const int middle = nearest(column);
   const FoundEdge found = find_edge(bands, {.first_column = middle - EdgeSearch::kColumns / 2,
                                             .reach = reach,
                                             .slope_step = kSlopeStep,
                                             .sign = sign,
                                             .limit = static_cast<int>(kContrast)});
-  return {static_cast<float>(middle + found.place - EdgeSearch::kPlaces / 2),
-          kSlopeStep * static_cast<float>(found.slope - EdgeSearch::kSlopes / 2)};
+  return {static_cast<float>(middle + found.place - kMiddlePlace),
+          kSlopeStep * static_cast<float>(found.slope - kUpright)};
 }
 
 float row_of(int band) { return (static_cast<float>(band) + 0.5F) * Bands::kRows; }
