@@ -80,6 +80,8 @@ std::string to_json(const Evaluation& e) {
   const PixelRates::Point pixels = rates_at(e.pixels, e.min_score);
   json["ap_of_all"] = e.ap_of_all;
   json["calibration_error"] = e.reliability.calibration_error;
+  for (const Reliability::Bin& bin : e.reliability.bins)
+    json["reliability"].push_back({bin.count, bin.mean_score, bin.hit_share});
   json["range_within_2_sigma"] = e.range_trust.share_within_2_sigma;
   json["pixel_true_positive_rate"] = pixels.true_positive_rate;
   json["pixel_false_positive_rate"] = pixels.false_positive_rate;
