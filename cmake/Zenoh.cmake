@@ -29,11 +29,22 @@ endif()
 set(bridge "${CMAKE_SOURCE_DIR}/src/publish/zenoh_bridge")
 set(library "${CMAKE_BINARY_DIR}/libzenoh_bridge.a")
 set(headers "${BOLE_CARGO_TARGET_DIR}/cxxbridge")
+
+# Where the crates lie on this machine stays out of the library: each machine builds the same.
+set(cargo_home "$ENV{CARGO_HOME}")
+if(NOT cargo_home)
+  set(cargo_home "$ENV{HOME}/.cargo")
+endif()
+set(reproducible
+  --config "build.rustflags=['--remap-path-prefix=${cargo_home}=/cargo']"
+  --config "env.CFLAGS='-ffile-prefix-map=${cargo_home}=/cargo'"
+  --config "env.CXXFLAGS='-ffile-prefix-map=${cargo_home}=/cargo'")
+
 file(GLOB bridge_sources CONFIGURE_DEPENDS "${bridge}/src/*.rs" "${bridge}/Cargo.*")
 add_custom_command(
   OUTPUT "${library}"
   COMMAND "${CMAKE_COMMAND}" -E env "BOLE_SOURCE_DIR=${CMAKE_SOURCE_DIR}"
-          "${CARGO}" build --quiet --release --locked
+          "${CARGO}" build --quiet --release --locked ${reproducible}
           --manifest-path "${bridge}/Cargo.toml" --target-dir "${BOLE_CARGO_TARGET_DIR}"
   COMMAND "${CMAKE_COMMAND}" -E copy
           "${BOLE_CARGO_TARGET_DIR}/release/libzenoh_bridge.a" "${library}"

@@ -45,6 +45,11 @@ def test_boled_links_no_opencv(programs):
     assert "libc.so" in libraries and "opencv" not in libraries
 
 
+def test_boled_names_no_folder_of_the_crates_that_it_was_built_from(programs):
+    cargo = pathlib.Path(os.environ.get("CARGO_HOME") or pathlib.Path.home() / ".cargo")
+    assert os.fsencode(cargo) not in (programs / "boled").read_bytes()
+
+
 def test_boled_uses_little_memory_and_ends_at_sigterm(programs, drive):
     command = [programs / "boled", "--camera", drive / "camera.toml", "--source", f"replay:{drive}",
                "--pace", "rate:30", "--loop", "--publish", "jsonl:/dev/null"]
