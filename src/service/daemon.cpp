@@ -72,8 +72,8 @@ void log_summary(const Telemetry::Summary& summary, const std::vector<bus_t>& bu
 
 void run_daemon(const DaemonConfig& config, const std::string& version, int stop_fd) {
   const Camera camera = load_camera(config.camera.file);
-  const WarpTable table = open_table(config.camera, camera);
   SourceSetup setup = make_source(config, camera);
+  const WarpTable table = open_table(config.camera, camera);
   std::vector<std::unique_ptr<Publisher>> publishers =
       make_publishers(config, calibration_json(camera));
 
