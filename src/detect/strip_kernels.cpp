@@ -35,16 +35,20 @@ std::uint64_t SumStrips(const std::uint8_t* row, const RowStrips& strips) {
   return hn::GetLane(hn::SumOfLanes(d64, sums));
 }
 
+// The last vector ends with the pixels; what the one before has summed is left out of it.
 int SumPixels(const std::uint8_t* pixels, int count) {
-  const hn::ScalableTag<std::uint8_t> d;
+  const hn::CappedTag<std::uint8_t, 32> d;
   const hn::Repartition<std::uint64_t, decltype(d)> d64;
   const int lanes = static_cast<int>(hn::Lanes(d));
+  if (count < lanes) return std::accumulate(pixels, pixels + count, 0);
   auto sums = hn::Zero(d64);
   int x = 0;
   for (; x + lanes <= count; x += lanes)
     sums = hn::Add(sums, hn::SumsOf8(hn::LoadU(d, pixels + x)));
-  return static_cast<int>(hn::GetLane(hn::SumOfLanes(d64, sums))) +
-         std::accumulate(pixels + x, pixels + count, 0);
+  const auto summed = hn::FirstN(d, static_cast<std::size_t>(x + lanes - count));
+  const auto rest = hn::IfThenZeroElse(summed, hn::LoadU(d, pixels + count - lanes));
+  sums = hn::Add(sums, hn::SumsOf8(rest));
+  return static_cast<int>(hn::GetLane(hn::SumOfLanes(d64, sums)));
 }
 
 }  // namespace bole::HWY_NAMESPACE

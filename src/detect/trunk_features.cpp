@@ -146,10 +146,12 @@ FeatureReader::Strips FeatureReader::strips(const PanoramaView& panorama, int ro
                    {nearest(middle - gap), nearest(middle + core), nearest(middle + far)}};
   bounds.last[1] = std::max(bounds.last[1], bounds.first[1] + 1);
   const std::uint8_t* pixels = panorama.row(row);
+  // Narrow trunks, most of them, lie within one vector or two.
   const bool within = bounds.first[0] >= 0 && bounds.last[2] <= width_ &&
                       pixels - panorama.pixels + bounds.first[0] >= RowStrips::kUnderread;
+  const bool narrow = bounds.last[2] - bounds.first[0] <= 64;
   const std::array<int, F::kStrips> sums =
-      within ? sum_strips(pixels, bounds) : sum_round(pixels, bounds);
+      within && narrow ? sum_strips(pixels, bounds) : sum_round(pixels, bounds);
   Strips means;
   for (int k = 0; k < F::kStrips; ++k) {
     const int n = bounds.last[k] - bounds.first[k];

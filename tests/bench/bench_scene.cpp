@@ -98,14 +98,15 @@ std::vector<std::byte> jpeg(const std::vector<std::byte>& rgb, ImageSize size) {
   return {first, first + length};
 }
 
-Scene make_scene(ImageSize size) {
+}  // namespace
+
+Scene make_scene(ImageSize size, const std::function<void(CameraConfig&)>& change) {
   Camera camera = scaled_example(size);
+  if (change) change(camera.config);
   WarpTable table = build_warp_table(camera);
   std::vector<std::byte> green = paint(camera);
   return {std::move(camera), std::move(table), std::move(green)};
 }
-
-}  // namespace
 
 std::vector<std::byte> Scene::frame(PixelFormat format) const {
   const ImageSize size = table.image_size();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,10 @@ struct Scene {
   std::vector<std::byte> frame(PixelFormat format) const;
 };
 
-/// The scene of that size, made at the first call.
+/// A scene of that size; `change`, if any, is made to the camera's configuration beforehand.
+Scene make_scene(ImageSize size, const std::function<void(CameraConfig&)>& change = {});
+
+/// The unchanged scene of that size, made at the first call.
 const Scene& scene(ImageSize size);
 
 /// Does the work of one frame. A function of its own, never inlined: scripts/bench counts the
