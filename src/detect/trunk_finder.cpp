@@ -9,7 +9,7 @@ namespace {
 constexpr float kWorthASecondLook = -3.0F;  // logit
 constexpr float kWorthOtherFeet = -4.0F;    // logit
 constexpr float kWorthAnswering = -3.5F;    // logit
-constexpr float kFarBetter = 2.0F;  // of two logits: the second look seldom turns them round
+constexpr float kFarBetter = 3.0F;  // of two logits: the second look seldom turns them round
 constexpr float kSure = 4.0F;       // logit
 constexpr float kHopeless = -99;    // logit
 
