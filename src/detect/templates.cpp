@@ -177,8 +177,7 @@ void Templates::collect(int size_index, int polarity) {
       continue;
     if (found_.size() == found_.capacity()) return;
     found_.push_back({static_cast<float>(i * step), static_cast<float>(size.width),
-                      static_cast<float>(peaks.foot[i] * Bands::kRows),
-                      static_cast<float>(evidence) / kFullResponse, polarity == 0,
+                      static_cast<float>(peaks.foot[i] * Bands::kRows), polarity == 0,
                       static_cast<float>(evidence * size.rank_factor)});
   }
 }

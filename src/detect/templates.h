@@ -11,12 +11,11 @@ namespace bole {
 
 /// A place where a trunk may stand, as coarse as the templates are.
 struct Candidate {
-  float left = 0;      ///< column of the left edge
-  float width = 0;     ///< columns
-  float foot = 0;      ///< row just below the visible trunk
-  float evidence = 0;  ///< bands of full contrast, less what speaks against
-  bool dark = true;    ///< darker than what is beside it
-  float rank = 0;      ///< evidence, wide templates held back: they gather more of it from nothing
+  float left = 0;    ///< column of the left edge
+  float width = 0;   ///< columns
+  float foot = 0;    ///< row just below the visible trunk
+  bool dark = true;  ///< darker than what is beside it
+  float rank = 0;    ///< sum of contrast, wide templates held back: they gather more from nothing
 };
 
 /// Contrast templates: a trunk is a pair of opposite edges that run down the image together, and it

@@ -86,13 +86,13 @@ EdgeBands EdgeFitter::along(const Bands& bands, Extent extent, float foot, int f
 }
 
 // Straight line by least squares; places far off it count less and less.
-EdgeFitter::Placed EdgeFitter::place(const EdgeBands& bands, EdgeLine& line, int sign) const {
+float EdgeFitter::place(const EdgeBands& bands, EdgeLine& line, int sign) const {
   EdgePlaces places;
   const int least = nearest(0.15F * kContrast * static_cast<float>(bands.flank));
   place_edge(bands, line, sign, least, kStrongContrast, places);
-  if (places.found < 4) return {3, 1};
+  if (places.found < 4) return 3;
   EdgeLine fitted = line;
-  float scatter = 1, slope_variance = 1;
+  float scatter = 1;
   for (int round = 0; round < 3; ++round) {
     const float limit = round == 0 ? 2.0F : std::max(0.4F, 1.5F * scatter);
     const LineSums s = sum_places(places, fitted, 2.5F * limit);
@@ -106,11 +106,9 @@ EdgeFitter::Placed EdgeFitter::place(const EdgeBands& bands, EdgeLine& line, int
     fitted.column += static_cast<float>((s.error - turn * s.row) / w);
     fitted.slope += static_cast<float>(turn);
     scatter = std::sqrt(s.error_error / s.w);
-    slope_variance = static_cast<float>(std::max(0.04, s.error_error / w) * w / det * w /
-                                        std::max(4, places.found));
   }
   if (std::abs(fitted.slope) < 0.12F && std::abs(fitted.column - line.column) < 6) line = fitted;
-  return {scatter, slope_variance};
+  return scatter;
 }
 
 void EdgeFitter::judge(const EdgeBands& bands, const TrunkShape& shape, EdgeFit& fit) const {
@@ -127,7 +125,6 @@ void EdgeFitter::judge(const EdgeBands& bands, const TrunkShape& shape, EdgeFit&
   fit.above_right = share(r.above[1], above);
   fit.agreement = share(r.agree_below, bands.count - above);
   fit.agreement_above = share(r.agree_above, above);
-  fit.bands = bands.count;
 }
 
 EdgeFitter::Extent EdgeFitter::extent(const Bands& bands, float left, float width,
@@ -212,17 +209,14 @@ void EdgeFitter::refine(const Bands& bands, TrunkShape& shape, EdgeFit& fit) con
       along(bands, straight, shape.foot, std::clamp(static_cast<int>(0.2F * shape.width()), 2, 5));
   const int sign = shape.dark ? 1 : -1;
   EdgeLine left{shape.left, shape.left_slope}, right{shape.right, shape.right_slope};
-  const Placed l = place(edges, left, -sign);
-  const Placed r = place(edges, right, sign);
+  fit.scatter_left = place(edges, left, -sign);
+  fit.scatter_right = place(edges, right, sign);
   if (right.column - left.column > 2.5F) {
     shape.left = left.column;
     shape.left_slope = left.slope;
     shape.right = right.column;
     shape.right_slope = right.slope;
   }
-  fit.scatter_left = l.scatter;
-  fit.scatter_right = r.scatter;
-  fit.slope_sigma = 0.5F * std::sqrt(l.slope_variance + r.slope_variance);
   const int flank = std::clamp(static_cast<int>(0.25F * shape.width()), 2, 6);
   judge(along(bands, straight, shape.foot, flank), shape, fit);
 }

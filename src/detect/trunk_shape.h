@@ -33,8 +33,6 @@ struct EdgeFit {
   float agreement = 0;        ///< share of bands below the horizon where both edges respond
   float agreement_above = 0;  ///< share of bands above it
   float scatter_left = 0, scatter_right = 0;  ///< of the edges' places about the lines, columns
-  int bands = 0;
-  float slope_sigma = 0;  ///< standard deviation of the mean slope
 };
 
 /// Places both edges as lines: a search over shifts and slopes for the most contrast along all
@@ -60,9 +58,6 @@ class EdgeFitter {
   int first_band(float left, float right) const;
 
  private:
-  struct Placed {
-    float scatter = 0, slope_variance = 1;
-  };
   struct Extent {
     int first = 0, last = 0;  // bands
     int count() const { return std::max(0, last - first); }
@@ -70,7 +65,8 @@ class EdgeFitter {
   // What of a trunk is straight: from the upper border to above the root flare.
   Extent extent(const Bands& bands, float left, float width, float foot) const;
   EdgeBands along(const Bands& bands, Extent extent, float foot, int flank) const;
-  Placed place(const EdgeBands& bands, EdgeLine& line, int sign) const;
+  // Moves the line onto its edge; how far the edge's places scatter about it, columns.
+  float place(const EdgeBands& bands, EdgeLine& line, int sign) const;
   void judge(const EdgeBands& bands, const TrunkShape& shape, EdgeFit& fit) const;
 
   int width_, horizon_band_;
