@@ -1,9 +1,7 @@
 """libcamera through its real uvcvideo handler: the same lists as in replay, unplug and replug."""
 
-import time
-
 from rig import environment, frames
-from rig.appliance import Boled, Listener, camera_events
+from rig.appliance import Boled, Listener, camera_events, replug
 from rig.camera import Camera
 from rig.libcamera import camera_id, provide_firmware_node
 from rig.replay import NO_TRACKS, replayed_lists
@@ -41,19 +39,6 @@ def run():
     assert max(seen) <= OUTAGE_SEEN_WITHIN_S, f"outage seen after {max(seen):.2f} s"
     return (f"{rounds} times; no camera seen within {max(seen):.2f} s, "
             f"a list again within {max(again):.2f} s")
-
-
-def replug(camera, listener):
-    """Seconds from pulling out to the status that says so, and from the camera being there again to
-    a list."""
-    mark = listener.mark()
-    unplugged = time.monotonic()
-    camera.unplug()
-    outage_seen, _ = listener.wait_for_state("no camera", 10, mark)
-    camera.plug()
-    there = time.monotonic()
-    back, _ = listener.wait_for_new_list(30)
-    return outage_seen - unplugged, back - there
 
 
 def pictures(lists, replayed):

@@ -1,9 +1,7 @@
 """Unplugged and replugged in mid-stream, its device number changing: boled streams again."""
 
-import time
-
 from rig import environment, frames
-from rig.appliance import Boled, Listener, camera_events
+from rig.appliance import Boled, Listener, camera_events, replug
 from rig.camera import Camera
 from rig.wait import expect, wait_until
 
@@ -22,10 +20,10 @@ def run():
         camera.plug()
         with Boled(f"v4l2:{camera.link}", SIZE) as boled:
             listener.wait_for_list(60)
-            replug(camera, listener)  # the first outage may load what later ones have
+            replug_elsewhere(camera, listener)  # the first outage may load what later ones have
             holdings = boled.holdings()
             for _ in range(rounds):
-                outage_s, back_s = replug(camera, listener)
+                outage_s, back_s = replug_elsewhere(camera, listener)
                 seen.append(outage_s)
                 again.append(back_s)
                 devices.add(camera.device)
@@ -40,15 +38,8 @@ def run():
             f"a list again within {max(again):.2f} s")
 
 
-def replug(camera, listener):
-    """Seconds from pulling out to the status that says so, and from the camera being there again
-    (which takes the kernel and udev a second or more in emulation) to a list."""
-    with open(camera.device):  # keeps its number: the camera comes back under another
-        mark = listener.mark()
-        unplugged = time.monotonic()
-        camera.unplug()
-        outage_seen, _ = listener.wait_for_state("no camera", 10, mark)
-        camera.plug()
-        there = time.monotonic()
-        back, _ = listener.wait_for_new_list(30)
-    return outage_seen - unplugged, back - there
+def replug_elsewhere(camera, listener):
+    """The same, the camera coming back under another number. That it is there again takes the kernel
+    and udev a second or more in emulation."""
+    with open(camera.device):  # keeps its number
+        return replug(camera, listener)

@@ -101,6 +101,19 @@ class Listener(Process):
             lambda status: STATES[status["state"]] == state, timeout_s, f'state "{state}"', mark)
 
 
+def replug(camera, listener):
+    """Seconds from pulling out to the status that says so, and from the camera being there again to
+    a list."""
+    mark = listener.mark()
+    unplugged = time.monotonic()
+    camera.unplug()
+    outage_seen, _ = listener.wait_for_state("no camera", 10, mark)
+    camera.plug()
+    there = time.monotonic()
+    back, _ = listener.wait_for_new_list(30)
+    return outage_seen - unplugged, back - there
+
+
 def drops(status):
     """A status' counters of frames that gave no list, by cause."""
     return _by_name(status["drops"])
