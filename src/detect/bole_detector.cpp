@@ -40,6 +40,8 @@ class BoleDetector final : public Detector {
     const std::span<const Trunk> trunks = finder_.find(panorama);
     const GroundTilt tilt = tilt_of(trunks);
     for (const Trunk& trunk : trunks) {
+      // Its place can only make it less probable.
+      if (calibrated(probability(trunk.logit)) < kLeastScore) continue;
       const Tree tree = tree_of(trunk, tilt);
       if (tree.score >= kLeastScore && trees_.size() < trees_.capacity()) trees_.push_back(tree);
     }

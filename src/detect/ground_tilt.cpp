@@ -26,14 +26,13 @@ double against(const GroundTilt& tilt, double sigma) {
 }  // namespace
 
 double GroundTilt::raise(double bearing) const {
-  return forward * std::cos(bearing) + left * std::sin(bearing);
+  return raise(std::cos(bearing), std::sin(bearing));
 }
 
-double GroundTilt::lean(double bearing) const {
-  return forward * std::sin(bearing) - left * std::cos(bearing);
-}
+double GroundTilt::lean(double bearing) const { return lean(std::cos(bearing), std::sin(bearing)); }
 
 TiltEstimator::TiltEstimator(double height) : feet_(kWidths) {
+  ready_.reserve(256);
   // Every range and size: what is searched for does not bear on where the ground is.
   const RangePosterior posterior(height, Search{{0.1, 1000}, {0.001, 100}});
   for (int w = 0; w < kWidths; ++w) {
@@ -49,15 +48,23 @@ TiltEstimator::TiltEstimator(double height) : feet_(kWidths) {
   }
 }
 
-double TiltEstimator::feet(const TiltWitness& witness, const GroundTilt& tilt) const {
+TiltEstimator::Ready TiltEstimator::made_ready(const TiltWitness& witness) const {
   const double w =
       std::log(witness.sight.angular_width / kNarrowest) / std::log(kWidest / kNarrowest) * kWidths;
-  const auto& row = feet_[static_cast<std::size_t>(std::clamp(w, 0.0, kWidths - 1.0))];
-  const double place =
-      std::clamp((witness.sight.down + tilt.raise(witness.bearing) - kHighest) / kDownStep, 0.0,
-                 kDowns - 1.001);
-  const auto i = static_cast<std::size_t>(place);
-  return row[i] + (place - static_cast<double>(i)) * (row[i + 1] - row[i]);
+  return {.feet = feet_[static_cast<std::size_t>(std::clamp(w, 0.0, kWidths - 1.0))].data(),
+          .place = (witness.sight.down - kHighest) / kDownStep,
+          .cos_bearing = std::cos(witness.bearing),
+          .sin_bearing = std::sin(witness.bearing),
+          .lean = witness.lean,
+          .weight = witness.weight};
+}
+
+double TiltEstimator::feet(const Ready& witness, const GroundTilt& tilt) {
+  const double raised = tilt.raise(witness.cos_bearing, witness.sin_bearing) / kDownStep;
+  const double place = std::clamp(witness.place + raised, 0.0, kDowns - 1.001);
+  const auto i = static_cast<int>(place);
+  const float* at = witness.feet + i;
+  return at[0] + (place - i) * (at[1] - at[0]);
 }
 
 double TiltEstimator::lean(double off) const {
@@ -66,30 +73,30 @@ double TiltEstimator::lean(double off) const {
 
 // The tilt of the highest value that can be reached from none by steps that get smaller.
 template <class Value>
-GroundTilt TiltEstimator::climb(const Value& value) {
-  GroundTilt best;
-  double most = value(best);
+TiltEstimator::Found TiltEstimator::climb(const Value& value, double start) {
+  Found best{{}, start};
   for (double step = 0.04; step > 0.002;) {
-    const GroundTilt from = best;
+    const GroundTilt from = best.tilt;
     for (const auto& [x, y] :
          {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}}) {
       const GroundTilt next{from.forward + x * step, from.left + y * step};
       const double here = value(next);
-      if (here <= most) continue;
-      most = here;
-      best = next;
+      if (here > best.value) best = {next, here};
     }
-    if (best.forward == from.forward && best.left == from.left) step /= 2;
+    if (best.tilt.forward == from.forward && best.tilt.left == from.left) step /= 2;
   }
   return best;
 }
 
-GroundTilt TiltEstimator::estimate(std::span<const TiltWitness> witnesses) const {
+GroundTilt TiltEstimator::estimate(std::span<const TiltWitness> witnesses) {
   if (witnesses.size() < kFewest) return {};
+  ready_.clear();
+  for (const TiltWitness& witness : witnesses) ready_.push_back(made_ready(witness));
   const auto likelihood = [&](const GroundTilt& ground, const GroundTilt& camera) {
     double sum = 0;
-    for (const TiltWitness& w : witnesses)
-      sum += w.weight * (feet(w, ground) + lean(w.lean - camera.lean(w.bearing)));
+    for (const Ready& w : ready_)
+      sum +=
+          w.weight * (feet(w, ground) + lean(w.lean - camera.lean(w.cos_bearing, w.sin_bearing)));
     return sum;
   };
   const auto tilted = [&](const GroundTilt& t) {
@@ -98,10 +105,10 @@ GroundTilt TiltEstimator::estimate(std::span<const TiltWitness> witnesses) const
   const auto sloping = [&](const GroundTilt& t) {
     return likelihood(t, {}) - against(t, kSlopeSigma);
   };
-  const GroundTilt tilt = climb(tilted), slope = climb(sloping);
   const double none = likelihood({}, {});
-  if (none >= std::max(tilted(tilt), sloping(slope))) return {};
-  return tilted(tilt) > sloping(slope) ? tilt : slope;
+  const Found tilt = climb(tilted, none - kRare), slope = climb(sloping, none - kRare);
+  if (none >= std::max(tilt.value, slope.value)) return {};
+  return tilt.value > slope.value ? tilt.tilt : slope.tilt;
 }
 
 }  // namespace bole

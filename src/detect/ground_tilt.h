@@ -15,8 +15,14 @@ struct GroundTilt {
 
   /// By how much ground at this bearing seems raised, a tangent.
   double raise(double bearing) const;
+  double raise(double cos_bearing, double sin_bearing) const {
+    return forward * cos_bearing + left * sin_bearing;
+  }
   /// The lean, columns a row of the panorama, that a tilted camera gives to an upright trunk there.
   double lean(double bearing) const;
+  double lean(double cos_bearing, double sin_bearing) const {
+    return forward * sin_bearing - left * cos_bearing;
+  }
 };
 
 /// A trunk as a witness of the tilt.
@@ -35,18 +41,31 @@ class TiltEstimator {
  public:
   explicit TiltEstimator(double height);
 
-  GroundTilt estimate(std::span<const TiltWitness> witnesses) const;
+  GroundTilt estimate(std::span<const TiltWitness> witnesses);
 
  private:
   static constexpr int kWidths = 24, kDowns = 181, kLeans = 64;
 
-  double feet(const TiltWitness& witness, const GroundTilt& tilt) const;
+  // A witness as one tilt after the other needs it.
+  struct Ready {
+    const float* feet;  // log likelihood of its width by depression
+    double place;       // of its depression among them
+    double cos_bearing, sin_bearing, lean, weight;
+  };
+  struct Found {
+    GroundTilt tilt;
+    double value = 0;
+  };
+
+  Ready made_ready(const TiltWitness& witness) const;
+  static double feet(const Ready& witness, const GroundTilt& tilt);
   double lean(double off) const;
   template <class Value>
-  static GroundTilt climb(const Value& value);
+  static Found climb(const Value& value, double start);
 
   std::vector<std::array<float, kDowns>> feet_;  // log likelihood by width and depression
   std::array<float, kLeans> leans_;              // log likelihood by lean
+  std::vector<Ready> ready_;
 };
 
 }  // namespace bole

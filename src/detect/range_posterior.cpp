@@ -19,13 +19,13 @@ constexpr double kNearest = 0.5, kFarthest = 100;  // metres
 constexpr double kStep = 0.5;  // of the even ground's points, standard deviations
 constexpr double kRangeTolerance = 1.1, kDiameterTolerance = 1.3;  // lists reach so far beyond
 
-double normal(double x, double sigma) { return std::exp(-0.5 * (x / sigma) * (x / sigma)) / sigma; }
+double square(double x) { return x * x; }
 
-// Density over the logarithm of the range of trees that span 2 asin(s), but for a factor.
-double prior(double log_range, double s) {
-  const double range = std::exp(log_range);
-  const double size = std::log(2 * range * s / kTypicalDiameter) / kDiameterSpread;
-  return range * std::exp(-0.5 * size * size - range / kVisibility);
+// Density over the logarithm of the range of trees that span 2 asin(s), times exp(`exponent`), but
+// for a factor.
+double prior(double range, double log_range, double log_s, double exponent) {
+  const double size = (log_range + log_s + std::log(2 / kTypicalDiameter)) / kDiameterSpread;
+  return range * std::exp(exponent - 0.5 * square(size) - range / kVisibility);
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ RangePosterior::RangePosterior(double height, const Search& search)
   for (int i = 0; i < kRoughSteps; ++i) {
     const double part = (i + 0.5) / kRoughSteps;
     rough_log_range_[i] = std::log(kNearest) + part * std::log(kFarthest / kNearest);
-    rough_down_[i] = height / std::exp(rough_log_range_[i]);
+    rough_range_[i] = std::exp(rough_log_range_[i]);
   }
 }
 
@@ -50,25 +50,30 @@ RangePosterior::Points RangePosterior::points(const TrunkSight& sight) const {
   const double s = std::sin(sight.angular_width / 2);
   const double uneven = kGroundSigma * std::max(0.0, sight.down) / height_;
   const double sigma = std::hypot(sight.down_sigma, kAttitudeSigma, uneven);
+  const double log_s = std::log(s);
   Points points;
   constexpr int kMiddle = kEvenSteps / 2;
   for (int i = 0; i < kEvenSteps; ++i) {
     const double off = kStep * (i - kMiddle);
     const double down = std::max(sight.down + off * sigma, 1e-4);
-    points.log_range[i] = std::log(height_ / (down * (1 - s)));
+    const double range = height_ / (down * (1 - s)), log_range = std::log(range);
     const bool real = sight.down + off * sigma > 1e-4;
+    points.range[i] = range;
+    points.log_range[i] = log_range;
     // d log(range) = d down / down; the normal density's sigma cancels the step's.
-    points.weight[i] = real ? (1 - kRoughShare) * std::exp(-0.5 * off * off) * kStep / down *
-                                  prior(points.log_range[i], s)
-                            : 0;
+    points.weight[i] =
+        real ? (1 - kRoughShare) * kStep / down * prior(range, log_range, log_s, -0.5 * square(off))
+             : 0;
   }
   const double step = std::log(kFarthest / kNearest) / kRoughSteps;
   const double rough_sigma = std::hypot(kRoughSigma, sight.down_sigma);
   for (int i = 0; i < kRoughSteps; ++i) {
-    points.log_range[kEvenSteps + i] = rough_log_range_[i];
-    points.weight[kEvenSteps + i] = kRoughShare * step *
-                                    normal(sight.down - rough_down_[i] / (1 - s), rough_sigma) *
-                                    prior(rough_log_range_[i], s);
+    const double range = rough_range_[i], log_range = rough_log_range_[i];
+    const double off = (sight.down - height_ / (range * (1 - s))) / rough_sigma;
+    points.range[kEvenSteps + i] = range;
+    points.log_range[kEvenSteps + i] = log_range;
+    points.weight[kEvenSteps + i] =
+        kRoughShare * step / rough_sigma * prior(range, log_range, log_s, -0.5 * square(off));
   }
   return points;
 }
@@ -83,10 +88,8 @@ RangeEstimate RangePosterior::estimate(const TrunkSight& sight) const {
   const double s = std::sin(sight.angular_width / 2);
   const double all = std::accumulate(everywhere.weight.begin(), everywhere.weight.end(), 1e-30);
   Points p = everywhere;  // then only what is searched
-  for (int i = 0; i < kSteps; ++i) {
-    const double range = std::exp(p.log_range[i]);
-    if (!is_searched(range, 2 * range * s)) p.weight[i] = 0;
-  }
+  for (int i = 0; i < kSteps; ++i)
+    if (!is_searched(p.range[i], 2 * p.range[i] * s)) p.weight[i] = 0;
   const double even = std::accumulate(p.weight.begin(), p.weight.begin() + kEvenSteps, 0.0);
   const double searched = std::accumulate(p.weight.begin() + kEvenSteps, p.weight.end(), even);
   if (searched <= 0) return {};

@@ -41,7 +41,7 @@ class RangePosterior {
   static constexpr int kEvenSteps = 13, kRoughSteps = 40;
   static constexpr int kSteps = kEvenSteps + kRoughSteps;
   struct Points {  // of the posterior: those of even ground first
-    std::array<double, kSteps> log_range, weight;
+    std::array<double, kSteps> range, log_range, weight;
   };
 
   Points points(const TrunkSight& sight) const;
@@ -50,7 +50,7 @@ class RangePosterior {
 
   double height_;
   Search search_;
-  std::array<double, kRoughSteps> rough_log_range_, rough_down_;
+  std::array<double, kRoughSteps> rough_range_, rough_log_range_;
 };
 
 }  // namespace bole

@@ -36,7 +36,7 @@ TEST(TiltEstimator, TrustsTheMountWhereTheTreesDoNotSpeakAgainstIt) {
 }
 
 TEST(TiltEstimator, FindsThreeDegreesOfTiltFromFeetAndLean) {
-  const TiltEstimator estimator(kHeight);
+  TiltEstimator estimator(kHeight);
   for (const GroundTilt tilt : {GroundTilt{0.052, 0}, {-0.052, 0}, {0, 0.052}, {0.04, -0.04}})
     expect_near(estimator.estimate(wood(15, tilt, tilt)), tilt, 0.02);
 }
