@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "detect/foot_kernels.h"
 #include "detect/grid_kernels.h"
 
 namespace bole {
@@ -16,10 +18,6 @@ constexpr std::array<float, F::kAcross + 1> kBorders = {
 constexpr float kReference = 1440 / 6.2831853F;  // the focal length that pixel limits are meant for
 constexpr float kLeastSpread = 0.06F;            // of log brightness
 
-// Whole numbers near columns and rows, which stay far from the limits.
-int floor_of(float x) { return static_cast<int>(x + 16384.0F) - 16384; }
-int nearest(float x) { return floor_of(x + 0.5F); }
-
 }  // namespace
 
 float foot_unit(const TrunkShape& shape, double focal) {
@@ -28,9 +26,7 @@ float foot_unit(const TrunkShape& shape, double focal) {
 }
 
 FeatureReader::FeatureReader(const DetectorSetup& setup)
-    : rows_(setup.panorama.rows),
-      width_(setup.panorama.width),
-      last_band_(setup.panorama.rows / Bands::kRows),
+    : last_band_(setup.panorama.rows / Bands::kRows),
       wraps_(setup.panorama.wraps()),
       focal_(setup.panorama.focal()),
       log_(1024) {
@@ -116,90 +112,28 @@ float FeatureReader::read_grid(const Bands& bands, const TrunkShape& shape, int 
   return spread;
 }
 
-// The sums of strips that may lead beyond a border: continued round the turn, or by its pixel.
-std::array<int, RowStrips::kCount> FeatureReader::sum_round(const std::uint8_t* row,
-                                                            const RowStrips& strips) const {
-  std::array<int, RowStrips::kCount> sums{};
-  for (const int turn : {-1, 0, 1}) {
-    const int begin = turn * width_;
-    if (strips.last[2] <= begin || strips.first[0] >= begin + width_) continue;
-    for (int k = 0; k < RowStrips::kCount; ++k) {
-      const int first = std::max(strips.first[k], begin) - begin;
-      const int last = std::min(strips.last[k], begin + width_) - begin;
-      const int n = std::max(0, last - first);
-      if (turn == 0 || wraps_) {
-        if (n > 0) sums[k] += sum_pixels(row + first, n);
-      } else {
-        sums[k] += n * row[turn < 0 ? 0 : width_ - 1];
-      }
-    }
-  }
-  return sums;
-}
-
-// Mean log brightness left of the trunk, in its core and right of it.
-FeatureReader::Strips FeatureReader::strips(const PanoramaView& panorama, int row, float middle,
-                                            float width) const {
-  const float gap = 0.5F * width + std::max(1.0F, 0.1F * width);
-  const float far = gap + std::max(2.0F, 0.5F * width), core = 0.28F * width;
-  RowStrips bounds{{nearest(middle - far), nearest(middle - core), nearest(middle + gap)},
-                   {nearest(middle - gap), nearest(middle + core), nearest(middle + far)}};
-  bounds.last[1] = std::max(bounds.last[1], bounds.first[1] + 1);
-  const std::uint8_t* pixels = panorama.row(row);
-  // Narrow trunks, most of them, lie within one vector or two.
-  const bool within = bounds.first[0] >= 0 && bounds.last[2] <= width_ &&
-                      pixels - panorama.pixels + bounds.first[0] >= RowStrips::kUnderread;
-  const bool narrow = bounds.last[2] - bounds.first[0] <= 64;
-  const std::array<int, F::kStrips> sums =
-      within && narrow ? sum_strips(pixels, bounds) : sum_round(pixels, bounds);
-  Strips means;
-  for (int k = 0; k < F::kStrips; ++k) {
-    const int n = bounds.last[k] - bounds.first[k];
-    // A quotient of whole numbers, rounded down: the half keeps it off the next one.
-    means[k] =
-        log_[static_cast<int>((4 * static_cast<float>(sums[k]) + 0.5F) / static_cast<float>(n))];
-  }
-  return means;
-}
-
 void FeatureReader::read_foot(const PanoramaView& panorama, const TrunkShape& shape, float spread,
                               float* out) const {
-  const float unit = foot_unit(shape, focal_);
-  const float sign = shape.dark ? 1.0F : -1.0F;
-  std::array<Strips, F::kFootRows> lines{};
-  // Neighbouring lines share rows where the unit is small.
-  struct {
-    int row = -1;
-    Strips means;
-  } known[2];
-  constexpr int kRowsAbove = F::kFootRows / 2;
-  for (int j = 0; j < F::kFootRows; ++j) {
-    const float place = shape.foot + (static_cast<float>(j - kRowsAbove) + 0.5F) * unit - 0.5F;
-    const float spacing = std::max(1.0F, 0.5F * unit);
-    const float high = spacing > 1 ? place - 0.5F * spacing : std::floor(place);
-    for (int k = 0; k < 2; ++k) {
-      const float at = high + static_cast<float>(k) * spacing;
-      const int i = std::clamp(nearest(at), 0, rows_ - 1);
-      const float weight = spacing > 1 ? 0.5F : k == 0 ? 1 - (place - high) : place - high;
-      auto& [row, means] = known[i & 1];
-      if (row != i) {
-        const float below = static_cast<float>(i) + 0.5F - shape.foot;
-        means = strips(panorama, i, shape.centre() + shape.slope() * below, shape.width());
-      }
-      row = i;
-      for (int strip = 0; strip < F::kStrips; ++strip) lines[j][strip] += weight * means[strip];
-    }
-  }
+  static_assert(F::kFootRows == FootLines::kLines && F::kStrips == FootLines::kStrips);
+  FootLines lines;
+  read_foot_lines(panorama, wraps_, log_.data(),
+                  {.row = shape.foot,
+                   .middle = shape.centre(),
+                   .lean = shape.slope(),
+                   .width = shape.width(),
+                   .unit = foot_unit(shape, focal_)},
+                  lines);
+  const auto& [left, middle, right] = lines.at;
   // The trunk's own brightness above the foot is the reference.
-  float core = 0;
-  for (int j = 0; j < kRowsAbove; ++j) core += lines[j][1];
-  core /= kRowsAbove;
-  const float scale = sign / std::max(spread, kLeastSpread);
+  constexpr int kRowsAbove = F::kFootRows / 2;
+  const float core =
+      std::accumulate(middle.begin(), middle.begin() + kRowsAbove, 0.0F) / kRowsAbove;
+  const float scale = (shape.dark ? 1.0F : -1.0F) / std::max(spread, kLeastSpread);
+  const auto value = [scale](float x) { return std::clamp(x * scale, -4.0F, 4.0F); };
   for (int j = 0; j < F::kFootRows; ++j) {
-    const auto& s = lines[j];
-    const float values[3] = {s[0] - s[1], s[1] - core, s[2] - s[1]};
-    for (int k = 0; k < F::kStrips; ++k)
-      out[j * F::kStrips + k] = std::clamp(values[k] * scale, -4.0F, 4.0F);
+    *out++ = value(left[j] - middle[j]);
+    *out++ = value(middle[j] - core);
+    *out++ = value(right[j] - middle[j]);
   }
 }
 

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "detect/bands.h"
-#include "detect/strip_kernels.h"
 #include "detect/trunk_shape.h"
 
 namespace bole {
@@ -38,12 +37,8 @@ class FeatureReader {
                   float* mean) const;
   void read_foot(const PanoramaView& panorama, const TrunkShape& shape, float spread,
                  float* out) const;
-  using Strips = std::array<float, TrunkFeatures::kStrips>;
-  Strips strips(const PanoramaView& panorama, int row, float middle, float width) const;
-  std::array<int, RowStrips::kCount> sum_round(const std::uint8_t* row,
-                                               const RowStrips& strips) const;
 
-  int rows_, width_, last_band_;
+  int last_band_;
   bool wraps_;
   double focal_;
   std::vector<float> log_;  // of a quarter grey level

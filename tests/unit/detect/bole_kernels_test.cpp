@@ -9,8 +9,8 @@
 #include "detect/dense_layer.h"
 #include "detect/edge_kernels.h"
 #include "detect/edge_search.h"
+#include "detect/foot_kernels.h"
 #include "detect/grid_kernels.h"
-#include "detect/strip_kernels.h"
 #include "detect/template_kernels.h"
 #include "simulate/noise.h"
 
@@ -257,17 +257,28 @@ TEST_P(Kernels, SumCellsAsThePlainLoops) {
   }
 }
 
-TEST_P(Kernels, SumStripsAsThePlainLoops) {
+TEST_P(Kernels, ReadFeetAsThePlainLoops) {
   simulate::Random random(8);
-  std::vector<std::uint8_t> row(2000);
-  for (auto& pixel : row) pixel = static_cast<std::uint8_t>(random.uniform(0, 255.9F));
-  for (const int width : {1, 5, 40, 190}) {
-    const int at = 64 + width;
-    const RowStrips strips{{at, at + width + 3, at + 3 * width + 3},
-                           {at + width, at + 2 * width + 3, at + 4 * width + 3}};
-    const auto plain = sum_strips_plain(row.data(), strips);
-    EXPECT_EQ(sum_strips(row.data(), strips), plain) << width;
-    EXPECT_EQ(sum_pixels(row.data() + at, width), plain[0]) << width;
+  const PanoramaGeometry geometry{.columns = 700, .width = 700, .rows = 300};
+  std::vector<std::uint8_t> pixels(700 * 300);
+  for (auto& pixel : pixels) pixel = static_cast<std::uint8_t>(random.uniform(0, 255.9F));
+  const PanoramaView panorama{&geometry, pixels.data(), 700};
+  std::vector<float> log(1024);
+  for (float& value : log) value = random.normal();
+  for (const float unit : {0.8F, 1.0F, 1.9F, 3.1F, 5.0F}) {
+    for (const float row : {5.0F, 120.3F, 297.0F}) {
+      for (const float middle : {2.5F, 333.3F, 690.0F}) {
+        for (const float width : {3.2F, 20.0F, 150.0F}) {
+          for (const bool wraps : {false, true}) {
+            const FootPlace place{row, middle, 0.09F, width, unit};
+            FootLines fast, plain;
+            read_foot_lines(panorama, wraps, log.data(), place, fast);
+            read_foot_lines_plain(panorama, wraps, log.data(), place, plain);
+            EXPECT_EQ(fast.at, plain.at) << row << " " << middle << " " << width << " " << unit;
+          }
+        }
+      }
+    }
   }
 }
 
