@@ -1,61 +1,112 @@
 #include "detect/dense_layer.h"
 
 #include <algorithm>
+#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "detect/dense_layer.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#ifndef BOLE_DETECT_DENSE_LAYER_ONCE
+#define BOLE_DETECT_DENSE_LAYER_ONCE
+namespace bole {
+namespace {
+
+constexpr float kLeak = 0.05F;
+constexpr float kUnit = 1.0F / (float{kInputUnits} * float{kWeightUnits});
+// What is added before a truncation, so that it rounds to the nearest whole number.
+constexpr float kFar = 16384;
+static_assert(kMostInput * float{kInputUnits} < kFar);
+
+}  // namespace
+}  // namespace bole
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace bole::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Three vectors of sums at a time: enough of them to hide an addition's latency.
-void AddWide(const float* HWY_RESTRICT in, int count, const float* HWY_RESTRICT weights, int units,
-             float* HWY_RESTRICT sums) {
-  const hn::CappedTag<float, 16> d;
+#if HWY_TARGET == HWY_SCALAR  // a processor without vectors
+
+void HiddenLayer(const std::int16_t* in, int pairs, const std::int16_t* weights, const float* bias,
+                 int units, float* out) {
+  hidden_layer_plain(in, pairs, weights, bias, units, out);
+}
+
+#else
+
+// Three vectors of units at a time: enough of them to hide the additions' latency.
+void HiddenLayer(const std::int16_t* HWY_RESTRICT in, int pairs,
+                 const std::int16_t* HWY_RESTRICT weights, const float* HWY_RESTRICT bias,
+                 int units, float* HWY_RESTRICT out) {
+  const hn::CappedTag<std::int32_t, 16> d;
+  const hn::Repartition<std::int16_t, decltype(d)> d16;
+  const hn::RebindToFloat<decltype(d)> df;
   const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
   for (std::ptrdiff_t j = 0; j < units; j += 3 * lanes) {
-    auto a = hn::LoadU(d, sums + j), b = hn::LoadU(d, sums + j + lanes);
-    auto c = hn::LoadU(d, sums + j + 2 * lanes);
-    for (std::ptrdiff_t i = 0; i < count; ++i) {
-      const auto value = hn::Set(d, in[i]);
-      const float* row = weights + i * units + j;
-      a = hn::Add(a, hn::Mul(value, hn::LoadU(d, row)));
-      b = hn::Add(b, hn::Mul(value, hn::LoadU(d, row + lanes)));
-      c = hn::Add(c, hn::Mul(value, hn::LoadU(d, row + 2 * lanes)));
+    auto a = hn::Zero(d), b = hn::Zero(d), c = hn::Zero(d);
+    auto more_a = hn::Zero(d), more_b = hn::Zero(d), more_c = hn::Zero(d);
+    for (std::ptrdiff_t i = 0; i < pairs; ++i) {
+      std::int32_t both = 0;
+      std::memcpy(&both, in + 2 * i, sizeof both);
+      const auto pair = hn::BitCast(d16, hn::Set(d, both));
+      const std::int16_t* row = weights + 2 * (i * units + j);
+      a = hn::ReorderWidenMulAccumulate(d, hn::LoadU(d16, row), pair, a, more_a);
+      b = hn::ReorderWidenMulAccumulate(d, hn::LoadU(d16, row + 2 * lanes), pair, b, more_b);
+      c = hn::ReorderWidenMulAccumulate(d, hn::LoadU(d16, row + 4 * lanes), pair, c, more_c);
     }
-    hn::StoreU(a, d, sums + j);
-    hn::StoreU(b, d, sums + j + lanes);
-    hn::StoreU(c, d, sums + j + 2 * lanes);
+    const auto finish = [&](auto sum, auto more, std::ptrdiff_t at) {
+      const auto total = hn::ConvertTo(df, hn::RearrangeToOddPlusEven(sum, more));
+      const auto value = hn::Add(hn::LoadU(df, bias + at), hn::Mul(total, hn::Set(df, kUnit)));
+      hn::StoreU(hn::Max(value, hn::Mul(value, hn::Set(df, kLeak))), df, out + at);
+    };
+    finish(a, more_a, j);
+    finish(b, more_b, j + lanes);
+    finish(c, more_c, j + 2 * lanes);
   }
 }
 
-void AddDense(const float* HWY_RESTRICT in, int count, const float* HWY_RESTRICT weights, int units,
-              float* HWY_RESTRICT sums) {
-  if (units != 8) return AddWide(in, count, weights, units, sums);
-  const hn::CappedTag<float, 8> d;
-  for (int j = 0; j < units; j += static_cast<int>(hn::Lanes(d))) {
-    auto sum = hn::LoadU(d, sums + j);
-    for (int i = 0; i < count; ++i)
-      sum = hn::Add(sum, hn::Mul(hn::Set(d, in[i]), hn::LoadU(d, weights + i * units + j)));
-    hn::StoreU(sum, d, sums + j);
+#endif  // HWY_TARGET
+
+void OutputLayer(const float* HWY_RESTRICT in, int count, const float* HWY_RESTRICT weights,
+                 float* HWY_RESTRICT out) {
+  const hn::CappedTag<float, kOutputLanes> d;
+  for (int k = 0; k < kOutputLanes; k += static_cast<int>(hn::Lanes(d))) {
+    auto p0 = hn::Zero(d), p1 = hn::Zero(d), p2 = hn::Zero(d), p3 = hn::Zero(d);
+    for (int i = 0; i < count; i += 4) {
+      const auto term = [&](int at) {
+        return hn::Mul(hn::Set(d, in[at]), hn::LoadU(d, weights + at * kOutputLanes + k));
+      };
+      p0 = hn::Add(p0, term(i));
+      p1 = hn::Add(p1, term(i + 1));
+      p2 = hn::Add(p2, term(i + 2));
+      p3 = hn::Add(p3, term(i + 3));
+    }
+    const auto sum = hn::Add(hn::Add(p0, p1), hn::Add(p2, p3));
+    hn::StoreU(hn::Add(hn::LoadU(d, out + k), sum), d, out + k);
   }
 }
 
 // The last vector ends where the numbers do, and may overlap the one before.
 void Standardise(const float* HWY_RESTRICT in, int count, const float* HWY_RESTRICT mean,
-                 const float* HWY_RESTRICT scale, float limit, float* HWY_RESTRICT out) {
+                 const float* HWY_RESTRICT scale, float limit, std::int16_t* HWY_RESTRICT out) {
   const hn::CappedTag<float, 16> d;
+  const hn::RebindToSigned<decltype(d)> di;
+  const hn::Rebind<std::int16_t, decltype(d)> d16;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const auto most = hn::Set(d, limit);
   for (int start = 0; start < count; start += lanes) {
     const int i = std::min(start, count - lanes);
     const auto value =
         hn::Mul(hn::Sub(hn::LoadU(d, in + i), hn::LoadU(d, mean + i)), hn::LoadU(d, scale + i));
-    hn::StoreU(hn::Min(most, hn::Max(hn::Neg(most), value)), d, out + i);
+    const auto bound = hn::Min(most, hn::Max(hn::Neg(most), value));
+    const auto units =
+        hn::Add(hn::Mul(bound, hn::Set(d, float{kInputUnits})), hn::Set(d, kFar + 0.5F));
+    const auto whole =
+        hn::Sub(hn::ConvertTo(di, units), hn::Set(di, static_cast<std::int32_t>(kFar)));
+    hn::StoreU(hn::DemoteTo(d16, whole), d16, out + i);
   }
 }
 
@@ -65,26 +116,49 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace bole {
 
-HWY_EXPORT(AddDense);
+HWY_EXPORT(HiddenLayer);
+HWY_EXPORT(OutputLayer);
 HWY_EXPORT(Standardise);
 
-void add_dense(const float* in, int count, const float* weights, int units, float* sums) {
-  HWY_DYNAMIC_DISPATCH(AddDense)(in, count, weights, units, sums);
+void hidden_layer(const std::int16_t* in, int pairs, const std::int16_t* weights, const float* bias,
+                  int units, float* out) {
+  HWY_DYNAMIC_DISPATCH(HiddenLayer)(in, pairs, weights, bias, units, out);
 }
 
-void add_dense_plain(const float* in, int count, const float* weights, int units, float* sums) {
-  for (int i = 0; i < count; ++i)
-    for (int j = 0; j < units; ++j) sums[j] += in[i] * weights[i * units + j];
+void hidden_layer_plain(const std::int16_t* in, int pairs, const std::int16_t* weights,
+                        const float* bias, int units, float* out) {
+  for (int j = 0; j < units; ++j) {
+    std::int32_t sum = 0;
+    for (int i = 0; i < 2 * pairs; ++i) sum += in[i] * weights[(i / 2) * 2 * units + 2 * j + i % 2];
+    const float value = bias[j] + static_cast<float>(sum) * kUnit;
+    out[j] = std::max(value, value * kLeak);
+  }
+}
+
+void output_layer(const float* in, int count, const float* weights, float* out) {
+  HWY_DYNAMIC_DISPATCH(OutputLayer)(in, count, weights, out);
+}
+
+void output_layer_plain(const float* in, int count, const float* weights, float* out) {
+  for (int k = 0; k < kOutputLanes; ++k) {
+    float parts[4] = {};
+    for (int i = 0; i < count; ++i) parts[i % 4] += in[i] * weights[i * kOutputLanes + k];
+    out[k] += (parts[0] + parts[1]) + (parts[2] + parts[3]);
+  }
 }
 
 void standardise(const float* in, int count, const float* mean, const float* scale, float limit,
-                 float* out) {
+                 std::int16_t* out) {
   HWY_DYNAMIC_DISPATCH(Standardise)(in, count, mean, scale, limit, out);
 }
 
 void standardise_plain(const float* in, int count, const float* mean, const float* scale,
-                       float limit, float* out) {
-  for (int i = 0; i < count; ++i) out[i] = std::clamp((in[i] - mean[i]) * scale[i], -limit, limit);
+                       float limit, std::int16_t* out) {
+  for (int i = 0; i < count; ++i) {
+    const float value = std::clamp((in[i] - mean[i]) * scale[i], -limit, limit);
+    out[i] = static_cast<std::int16_t>(
+        static_cast<int>(value * float{kInputUnits} + (kFar + 0.5F)) - static_cast<int>(kFar));
+  }
 }
 
 }  // namespace bole

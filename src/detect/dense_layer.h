@@ -1,16 +1,38 @@
 #pragma once
 
+#include <cstdint>
+
 namespace bole {
 
-/// sums[j] += in[i] weights[i][j] for all i, in their order and rounded after each step, so that
-/// the sums are the same on every processor. `units` is 8 or a multiple of 48.
-void add_dense(const float* in, int count, const float* weights, int units, float* sums);
-void add_dense_plain(const float* in, int count, const float* weights, int units, float* sums);
+/// The inner loops of the network, in whole vectors of whatever this processor has, and the plain
+/// loops that say what they must give: equal results.
+///
+/// The wide layer is summed in whole numbers, which are the same in any order, half as long as
+/// floats and multiplied two at a time: inputs in units of 1 / kInputUnits, weights of
+/// 1 / kWeightUnits.
+inline constexpr int kInputUnits = 2048, kWeightUnits = 8192;
+inline constexpr float kMostInput = 4;           ///< absolute value of an input
+inline constexpr float kMostWeight = 3;          ///< of a weight
+inline constexpr float kMostWeightsOfUnit = 30;  ///< sum of one unit's: the total stays below 2^31
 
-/// out[i] = (in[i] - mean[i]) scale[i], cut off at limit on either side. `count` is at least 16.
+/// out[i] = (in[i] - mean[i]) scale[i], cut off at `limit` on either side, to the nearest unit.
+/// `count` is at least 16, `limit` at most kMostInput.
 void standardise(const float* in, int count, const float* mean, const float* scale, float limit,
-                 float* out);
+                 std::int16_t* out);
 void standardise_plain(const float* in, int count, const float* mean, const float* scale,
-                       float limit, float* out);
+                       float limit, std::int16_t* out);
+
+/// out[j] = v or, where that is more, v / 20; v = bias[j] + the sum of in[i] weight(i, j), where
+/// weight(i, j) = weights[(i / 2) 2 units + 2 j + i % 2]. `units` is a multiple of 48.
+void hidden_layer(const std::int16_t* in, int pairs, const std::int16_t* weights, const float* bias,
+                  int units, float* out);
+void hidden_layer_plain(const std::int16_t* in, int pairs, const std::int16_t* weights,
+                        const float* bias, int units, float* out);
+
+/// out[k] += in[i] weights[8 i + k] for eight k. Inputs are summed in four parts, i % 4 alike, of
+/// which 0 and 1, and 2 and 3 are joined first. `count` is a multiple of 4.
+inline constexpr int kOutputLanes = 8;
+void output_layer(const float* in, int count, const float* weights, float* out);
+void output_layer_plain(const float* in, int count, const float* weights, float* out);
 
 }  // namespace bole

@@ -141,23 +141,31 @@ TEST_P(Kernels, SumColumnsAsThePlainLoops) {
       ASSERT_EQ(results[k][i], results[4 + k][i]) << k << " at " << i;
 }
 
-TEST_P(Kernels, AddLayersAsThePlainLoops) {
+TEST_P(Kernels, JudgeAsThePlainLoops) {
   simulate::Random random(4);
-  std::vector<float> in(205), weights(205 * 96), fast(96, 0.5F), plain(96, 0.5F);
-  for (float& value : in) value = random.normal();
-  for (float& weight : weights) weight = random.normal();
-  for (const int units : {8, 48, 96}) {
-    add_dense(in.data(), 205, weights.data(), units, fast.data());
-    add_dense_plain(in.data(), 205, weights.data(), units, plain.data());
+  std::vector<std::int16_t> in(206), weights(206 * 96);
+  for (auto& value : in) value = static_cast<std::int16_t>(random.uniform(-8192, 8192));
+  for (auto& weight : weights) weight = static_cast<std::int16_t>(1000 * random.normal());
+  std::vector<float> bias(96), fast(96), plain(96), second(96 * kOutputLanes);
+  for (auto* values : {&bias, &second})
+    for (float& value : *values) value = random.normal();
+  for (const int units : {48, 96}) {
+    hidden_layer(in.data(), 103, weights.data(), bias.data(), units, fast.data());
+    hidden_layer_plain(in.data(), 103, weights.data(), bias.data(), units, plain.data());
     EXPECT_EQ(fast, plain);
   }
+  std::vector<float> out(kOutputLanes, 0.5F), out_plain = out;
+  output_layer(plain.data(), 96, second.data(), out.data());
+  output_layer_plain(plain.data(), 96, second.data(), out_plain.data());
+  EXPECT_EQ(out, out_plain);
 }
 
 TEST_P(Kernels, StandardiseAsThePlainLoop) {
   simulate::Random random(7);
-  std::vector<float> in(205), mean(205), scale(205), fast(205), plain(205);
+  std::vector<float> in(205), mean(205), scale(205);
   for (auto* values : {&in, &mean, &scale})
     for (float& value : *values) value = 3 * random.normal();
+  std::vector<std::int16_t> fast(205), plain(205);
   standardise(in.data(), 205, mean.data(), scale.data(), 4, fast.data());
   standardise_plain(in.data(), 205, mean.data(), scale.data(), 4, plain.data());
   EXPECT_EQ(fast, plain);

@@ -22,7 +22,7 @@ TEST(Network, JudgesAsTheTrainedWeightsSay) {
   float was[7], is[7];
   std::memcpy(was, bytes.data(), sizeof was);
   std::memcpy(is, &now, sizeof is);
-  for (int i = 0; i < 7; ++i) EXPECT_NEAR(is[i], was[i], 1e-3) << i;
+  for (int i = 0; i < 7; ++i) EXPECT_NEAR(is[i], was[i], 5e-3) << i;
 }
 
 TEST(Network, ShiftsAShapeAsItSays) {
