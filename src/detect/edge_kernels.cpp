@@ -23,12 +23,16 @@ struct NearestColumns {
   alignas(64) std::int32_t at[kMostEdgeBands];
 };
 
+// Bands at a time, at most.
+constexpr int kPeakLanes = 32;
+
 // Peaks of the bands' responses about a line.
 struct Peaks {
-  alignas(64) std::int16_t height[kMostEdgeBands];  // 0: none
-  alignas(64) std::int16_t place[kMostEdgeBands];   // columns from the first one looked at
-  alignas(64) std::int16_t fall[kMostEdgeBands];    // of the response, from before to after it
-  alignas(64) std::int16_t bend[kMostEdgeBands];    // of the response at it
+  static constexpr int kBands = (kMostEdgeBands + kPeakLanes - 1) / kPeakLanes * kPeakLanes;
+  alignas(64) std::int16_t height[kBands];  // 0: none
+  alignas(64) std::int16_t place[kBands];   // columns from the first one looked at
+  alignas(64) std::int16_t fall[kBands];    // of the response, from before to after it
+  alignas(64) std::int16_t bend[kBands];    // of the response at it
 };
 
 std::int16_t bend_at(const EdgeBands& bands, int band, int column) {
@@ -78,6 +82,20 @@ using Vector = hn::Vec<Floats>;
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(Floats()));
 constexpr int kParts = kEdgeLanes / kLanes;
 
+using Four = hn::FixedTag<float, 4>;
+using FourValues = hn::Vec<Four>;
+
+// The sum of a vector's parts of four lanes, in halves.
+template <class D>
+HWY_INLINE FourValues Folded(D d, hn::Vec<D> values) {
+  if constexpr (hn::MaxLanes(d) == 4) {
+    return values;
+  } else {
+    const hn::Half<D> half;
+    return Folded(half, hn::Add(hn::LowerHalf(half, values), hn::UpperHalf(half, values)));
+  }
+}
+
 // kEdgeLanes sums side by side, in as many vectors as it takes.
 struct Sum {
   Vector parts[kParts];
@@ -85,12 +103,25 @@ struct Sum {
     for (Vector& part : parts) part = hn::Zero(Floats());
   }
   HWY_INLINE void Add(int part, Vector value) { parts[part] = hn::Add(parts[part], value); }
-  HWY_INLINE float Total() const {
-    alignas(64) float lanes[kEdgeLanes];
-    for (int p = 0; p < kParts; ++p) hn::Store(parts[p], Floats(), lanes + p * kLanes);
-    return sum_of(lanes);
+
+  HWY_INLINE FourValues Fold() const {
+    Vector sums[kParts];
+    for (int p = 0; p < kParts; ++p) sums[p] = parts[p];
+    for (int half = kParts / 2; half > 0; half /= 2)
+      for (int p = 0; p < half; ++p) sums[p] = hn::Add(sums[p], sums[p + half]);
+    return Folded(Floats(), sums[0]);
   }
 };
+
+// The totals of four sums.
+HWY_INLINE FourValues Totals(const Sum& a, const Sum& b, const Sum& c, const Sum& d) {
+  const Four four;
+  const auto halves = [&](FourValues x, FourValues y) {
+    return hn::Add(hn::InterleaveLower(four, x, y), hn::InterleaveUpper(four, x, y));
+  };
+  const FourValues ab = halves(a.Fold(), b.Fold()), cd = halves(c.Fold(), d.Fold());
+  return hn::Add(hn::ConcatLowerLower(four, cd, ab), hn::ConcatUpperUpper(four, cd, ab));
+}
 
 HWY_INLINE Vector Rows(const EdgeBands& bands, int band) {
   const Floats d;
@@ -114,13 +145,16 @@ HWY_INLINE void Follow(const EdgeBands& bands, EdgeLine line, NearestColumns& co
 }
 
 using Eight = hn::FixedTag<std::int16_t, 8>;
-using EightValues = hn::Vec<Eight>;
+using Many = hn::CappedTag<std::int16_t, kPeakLanes>;
+using ManyValues = hn::Vec<Many>;
+constexpr int kBlocks = static_cast<int>(hn::MaxLanes(Many())) / 8;
 
-// Rows become columns: three times every row is interleaved with the one four after it.
-HWY_INLINE void Transpose(EightValues (&rows)[8]) {
-  const Eight d;
+// In every block of eight lanes, rows become columns: three times every row is interleaved with the
+// one four after it.
+HWY_INLINE void Transpose(ManyValues (&rows)[8]) {
+  const Many d;
   for (int round = 0; round < 3; ++round) {
-    EightValues mixed[8];
+    ManyValues mixed[8];
     for (int i = 0; i < 4; ++i) {
       mixed[2 * i] = hn::InterleaveLower(d, rows[i], rows[i + 4]);
       mixed[2 * i + 1] = hn::InterleaveUpper(d, rows[i], rows[i + 4]);
@@ -129,9 +163,9 @@ HWY_INLINE void Transpose(EightValues (&rows)[8]) {
   }
 }
 
-// The peaks of eight bands, from responses at eight columns (the last one is not looked at).
-HWY_INLINE void FindPeaks(const EightValues (&responses)[8], int least, int first, Peaks& peaks) {
-  const Eight d;
+// The peaks of a vector of bands, from responses at eight columns (the last one is not looked at).
+HWY_INLINE void FindPeaks(const ManyValues (&responses)[8], int least, int first, Peaks& peaks) {
+  const Many d;
   constexpr int kLast = 2 * EdgePlaces::kReach;
   auto height = responses[0], place = hn::Zero(d), before = hn::Zero(d), after = hn::Zero(d);
   for (int o = 1; o <= kLast; ++o) {
@@ -156,17 +190,22 @@ void LookAlong(const EdgeBands& bands, const NearestColumns& columns, int sign, 
   const Eight d;
   const hn::RebindToUnsigned<Eight> du;
   const auto flip = hn::Set(d, static_cast<std::int16_t>(sign < 0 ? -1 : 0));
-  for (int first = 0; first < bands.count; first += 8) {
-    EightValues responses[8];
-    for (int k = 0; k < 8; ++k) {
+  for (int first = 0; first < bands.count; first += 8 * kBlocks) {
+    // Eight bands stand in rows of their own, the next eight beside them.
+    alignas(64) std::int16_t beside[8][8 * kBlocks];
+    for (int k = 0; k < 8 * kBlocks; ++k) {
       const int band = std::min(first + k, bands.count - 1);
       const std::uint16_t* at =
           bands.sums + band * bands.pitch + columns.at[band] - EdgePlaces::kReach;
       const auto middle = hn::LoadU(du, at);
       const auto bend = hn::BitCast(d, hn::Sub(hn::Sub(hn::LoadU(du, at + bands.flank), middle),
                                                hn::Sub(middle, hn::LoadU(du, at - bands.flank))));
-      responses[k] = band < bands.horizon ? hn::Abs(bend) : hn::Sub(hn::Xor(bend, flip), flip);
+      const auto response =
+          band < bands.horizon ? hn::Abs(bend) : hn::Sub(hn::Xor(bend, flip), flip);
+      hn::Store(response, d, beside[k % 8] + k / 8 * 8);
     }
+    ManyValues responses[8];
+    for (int k = 0; k < 8; ++k) responses[k] = hn::Load(Many(), beside[k]);
     Transpose(responses);
     FindPeaks(responses, least, first, peaks);
   }
@@ -225,8 +264,10 @@ LineSums SumPlaces(const EdgePlaces& places, EdgeLine line, float tail) {
       error_error.Add(p, hn::Mul(weighted_error, e));
     }
   }
-  return {w.Total(),     row.Total(),       row_row.Total(),
-          error.Total(), row_error.Total(), error_error.Total()};
+  alignas(32) float totals[8];
+  hn::Store(Totals(w, row, row_row, error), Four(), totals);
+  hn::Store(Totals(row_error, error_error, {}, {}), Four(), totals + 4);
+  return {totals[0], totals[1], totals[2], totals[3], totals[4], totals[5]};
 }
 
 EdgeResponses RespondAlong(const EdgeBands& bands, EdgeLine left, EdgeLine right, float full) {
@@ -262,8 +303,10 @@ EdgeResponses RespondAlong(const EdgeBands& bands, EdgeLine left, EdgeLine right
       result.agree_above += static_cast<int>(hn::CountTrue(d, hn::And(is_above, agree_above)));
     }
   }
-  result.below = {below[0].Total(), below[1].Total()};
-  result.above = {above[0].Total(), above[1].Total()};
+  alignas(16) float totals[4];
+  hn::Store(Totals(below[0], below[1], above[0], above[1]), Four(), totals);
+  result.below = {totals[0], totals[1]};
+  result.above = {totals[2], totals[3]};
   return result;
 }
 

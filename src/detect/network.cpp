@@ -18,7 +18,7 @@ static_assert(weights::kLimit <= kMostInput);
 
 // The first layer's weights in whole units, two inputs side by side.
 constexpr int kPairs = (weights::kInputs + 1) / 2;
-constexpr auto kFirst = [] {
+alignas(64) constexpr auto kFirst = [] {
   std::array<std::int16_t, std::size_t{2} * kPairs * weights::kHidden> units{};
   for (int j = 0; j < weights::kHidden; ++j) {
     float all = 0;
@@ -35,7 +35,7 @@ constexpr auto kFirst = [] {
 
 // The second layer's weights with columns of zeros, for whole vectors.
 static_assert(weights::kOutputs <= kOutputLanes);
-constexpr auto kSecond = [] {
+alignas(64) constexpr auto kSecond = [] {
   std::array<std::array<float, kOutputLanes>, weights::kHidden> padded{};
   for (int j = 0; j < weights::kHidden; ++j)
     for (int k = 0; k < weights::kOutputs; ++k) padded[j][k] = weights::kSecond[j][k];

@@ -58,20 +58,22 @@ EdgeFitter::EdgeFitter(const DetectorSetup& setup)
     : width_(setup.panorama.width),
       horizon_band_(
           static_cast<int>(std::lround((setup.panorama.horizon_row() + 0.5) / Bands::kRows))),
-      first_seen_(setup.panorama.width),
-      wraps_(setup.panorama.wraps()) {
-  for (int x = 0; x < width_; ++x)
-    first_seen_[x] = (setup.seen.columns[x].first + Bands::kRows - 1) / Bands::kRows;
+      margin_(Templates::margin(setup)) {
+  for (int x = -margin_; x < width_ + margin_; ++x) {
+    const int column =
+        setup.panorama.wraps() ? ((x % width_) + width_) % width_ : std::clamp(x, 0, width_ - 1);
+    first_seen_.push_back((setup.seen.columns[column].first + Bands::kRows - 1) / Bands::kRows);
+  }
 }
 
 int EdgeFitter::first_band(float left, float right) const {
-  int first = 0;
-  const int from = static_cast<int>(std::floor(left)), to = static_cast<int>(std::ceil(right));
+  const auto at = [&](float x) {
+    return std::clamp(static_cast<int>(x) + margin_, 0, width_ + 2 * margin_ - 1);
+  };
+  const int from = at(std::floor(left)), to = at(std::ceil(right));
   const int step = std::max(1, (to - from) / 16);
-  for (int x = from; x <= to; x += step) {
-    const int column = wraps_ ? ((x % width_) + width_) % width_ : std::clamp(x, 0, width_ - 1);
-    first = std::max(first, first_seen_[column]);
-  }
+  int first = 0;
+  for (int x = from; x <= to; x += step) first = std::max(first, first_seen_[x]);
   return first;
 }
 

@@ -70,8 +70,8 @@ class EdgeFitter {
   void judge(const EdgeBands& bands, const TrunkShape& shape, EdgeFit& fit) const;
 
   int width_, horizon_band_;
-  std::vector<int> first_seen_;  // band, for each column
-  bool wraps_;
+  int margin_;                   // columns before the first and after the last one
+  std::vector<int> first_seen_;  // band, for each column and those of the margins
 };
 
 }  // namespace bole
