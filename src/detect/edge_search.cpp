@@ -1,7 +1,11 @@
 #include "detect/edge_search.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstdlib>
+
+#include "detect/bands.h"
 
 // Vectors of scalable length are left out: they cannot stand in arrays.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
@@ -15,28 +19,52 @@
 namespace bole {
 namespace {
 
-using Search = EdgeSearch;
+constexpr int kMiddle = (EdgeSearch::kColumns - EdgeSearch::kPlaces) / 2;
+constexpr int kUpright = EdgeSearch::kSlopes / 2;
 
-// What is added before a truncation, so that it rounds to the nearest whole number.
-constexpr float kFar = 16384;
-constexpr int kMiddle = (Search::kColumns - Search::kPlaces) / 2;
+// Columns to a side at which a line, so many slopes from upright, stands in a band: the last one
+// above the foot is at distance 1.
+constexpr int shift_at(int slopes, int distance) {
+  const int thousandths =
+      EdgeSearch::kSlopeStep * slopes * (Bands::kRows * distance - Bands::kRows / 2);
+  return std::min((thousandths + 500) / 1000, kMiddle);
+}
 
+// The least distance at which a line stands so many columns to a side.
+constexpr auto kDistances = [] {
+  std::array<std::array<int, kMiddle + 1>, kUpright + 1> distances{};
+  for (int slopes = 0; slopes <= kUpright; ++slopes) {
+    for (int shift = 0; shift <= kMiddle; ++shift) {
+      int& distance = distances[slopes][shift];
+      while (slopes > 0 && shift_at(slopes, distance) < shift) ++distance;
+    }
+  }
+  return distances;
+}();
+
+// A line stands at the same column in one band after the other, but for few steps: so responses are
+// summed down the columns, and a line's sum is taken from step to step.
 struct SearchBuffers {
-  alignas(64) std::int16_t responses[kMostEdgeBands][Search::kColumns];
-  alignas(64) std::int32_t starts[kMostEdgeBands];  // where in the window a slope's places start
-  alignas(64) std::int16_t totals[Search::kSlopes][Search::kPlaces];
+  alignas(64) std::int16_t sums[kMostEdgeBands + 1][EdgeSearch::kColumns];  // of the bands before
+  alignas(64) std::int16_t totals[EdgeSearch::kSlopes][EdgeSearch::kPlaces];
 };
 
-// bend / flank for 0 <= bend < 2^12 is bend times this, divided by 2^16.
-std::uint16_t reciprocal(int flank) { return static_cast<std::uint16_t>(65536 / flank + 1); }
-
-float slope_of(const Search& search, int s) {
-  return search.slope_step * static_cast<float>(s - Search::kSlopes / 2);
+// sign / flank, in units of 2^-15.
+std::int16_t share_of_flank(const EdgeBands& bands, const EdgeSearch& search) {
+  const int share = ((1 << 15) + bands.flank / 2) / bands.flank;
+  return static_cast<std::int16_t>(search.sign < 0 ? -share : share);
 }
 
-float share_of(int place) {
-  return 1 - 0.03F * static_cast<float>(std::abs(place - Search::kPlaces / 2));
+constexpr float share_of(int place) {
+  const int off = place - EdgeSearch::kPlaces / 2;
+  return 1 - 0.03F * static_cast<float>(off < 0 ? -off : off);
 }
+
+alignas(64) constexpr auto kShares = [] {
+  std::array<float, EdgeSearch::kPlaces> shares{};
+  for (int i = 0; i < EdgeSearch::kPlaces; ++i) shares[i] = share_of(i);
+  return shares;
+}();
 
 }  // namespace
 }  // namespace bole
@@ -47,93 +75,90 @@ namespace bole::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-HWY_INLINE void Respond(const EdgeBands& bands, const Search& search, SearchBuffers& buffers) {
-  const hn::CappedTag<std::uint16_t, Search::kPlaces> d;
-  const hn::RebindToSigned<decltype(d)> di;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const auto most = hn::Set(d, static_cast<std::uint16_t>(search.limit * bands.flank));
-  const auto share = hn::Set(d, reciprocal(bands.flank));
-  const auto sign = hn::Set(di, static_cast<std::int16_t>(search.sign < 0 ? -1 : 0));
-  for (int band = 0; band < bands.count; ++band) {
-    const std::uint16_t* sums = bands.sums + band * bands.pitch + search.first_column;
-    for (int i = 0; i < Search::kColumns; i += lanes) {
-      const auto middle = hn::LoadU(d, sums + i);
-      const auto bend =
-          hn::BitCast(di, hn::Sub(hn::Sub(hn::LoadU(d, sums + i + bands.flank), middle),
-                                  hn::Sub(middle, hn::LoadU(d, sums + i - bands.flank))));
-      const auto size = hn::MulHigh(hn::Min(hn::BitCast(d, hn::Abs(bend)), most), share);
-      const auto negative = hn::Xor(hn::ShiftRight<15>(bend), sign);
-      auto value = hn::Sub(hn::Xor(hn::BitCast(di, size), negative), negative);
-      if (band < bands.horizon)
-        value = hn::Max(value, hn::ShiftRight<4>(hn::Mul(value, hn::Set(di, -11))));
-      hn::Store(value, di, buffers.responses[band] + i);
+using Values = hn::CappedTag<std::int16_t, EdgeSearch::kPlaces>;
+constexpr int kLanes = static_cast<int>(hn::MaxLanes(Values()));
+
+// Sums the responses of one vector of columns.
+HWY_INLINE void SumResponses(const EdgeBands& bands, const EdgeSearch& search, int column,
+                             SearchBuffers& buffers) {
+  const Values d;
+  const hn::RebindToUnsigned<Values> du;
+  const auto most = hn::Set(d, static_cast<std::int16_t>(search.limit * bands.flank));
+  const auto share = hn::Set(d, share_of_flank(bands, search)), wrong_sign = hn::Set(d, -11);
+  const std::uint16_t* at = bands.sums + search.first_column + column;
+  auto sum = hn::Zero(d);
+  hn::Store(sum, d, buffers.sums[0] + column);
+  for (int band = 0; band < bands.count; ++band, at += bands.pitch) {
+    const auto middle = hn::LoadU(du, at);
+    const auto beside = hn::Add(hn::LoadU(du, at + bands.flank), hn::LoadU(du, at - bands.flank));
+    const auto bend = hn::BitCast(d, hn::Sub(beside, hn::Add(middle, middle)));
+    auto value = hn::MulFixedPoint15(hn::Min(hn::Max(bend, hn::Neg(most)), most), share);
+    if (band < bands.horizon) value = hn::Max(value, hn::ShiftRight<4>(hn::Mul(value, wrong_sign)));
+    sum = hn::Add(sum, value);
+    hn::Store(sum, d, buffers.sums[band + 1] + column);
+  }
+}
+
+// The sums along the lines of one slope and its mirror image.
+HWY_INLINE void SumSlopes(const EdgeBands& bands, int foot, int slopes, SearchBuffers& buffers) {
+  const Values d;
+  constexpr int kParts = EdgeSearch::kPlaces / kLanes;
+  hn::Vec<Values> right[kParts], left[kParts];
+  int shift = shift_at(slopes, foot - bands.count + 1);
+  for (int p = 0; p < kParts; ++p) {
+    const std::int16_t* all = buffers.sums[bands.count] + kMiddle + p * kLanes;
+    right[p] = hn::LoadU(d, all + shift);
+    left[p] = hn::LoadU(d, all - shift);
+  }
+  while (++shift <= kMiddle && kDistances[slopes][shift] <= foot) {
+    const std::int16_t* at = buffers.sums[foot - kDistances[slopes][shift] + 1] + kMiddle;
+    for (int p = 0; p < kParts; ++p, at += kLanes) {
+      const auto step = [&](int to, int from) {
+        return hn::Sub(hn::LoadU(d, at + to), hn::LoadU(d, at + from));
+      };
+      right[p] = hn::Add(right[p], step(shift, shift - 1));
+      left[p] = hn::Add(left[p], step(-shift, 1 - shift));
     }
   }
-}
-
-HWY_INLINE void Start(const EdgeBands& bands, float slope, SearchBuffers& buffers) {
-  const hn::CappedTag<std::int32_t, kEdgeLanes> d;
-  const hn::RebindToFloat<decltype(d)> df;
-  const auto step = hn::Set(df, bands.row_step), first = hn::Set(df, bands.first_row);
-  for (int band = 0; band < bands.count; band += static_cast<int>(hn::Lanes(d))) {
-    const auto row = hn::Add(first, hn::Mul(step, hn::Iota(df, static_cast<float>(band))));
-    const auto shift = hn::Add(hn::Mul(row, hn::Set(df, slope)), hn::Set(df, kFar + 0.5F));
-    const auto start =
-        hn::Sub(hn::ConvertTo(d, shift), hn::Set(d, static_cast<std::int32_t>(kFar) - kMiddle));
-    hn::Store(hn::Min(hn::Max(start, hn::Zero(d)), hn::Set(d, 2 * kMiddle)), d,
-              buffers.starts + band);
+  for (int p = 0; p < kParts; ++p) {
+    hn::Store(right[p], d, buffers.totals[kUpright - slopes] + p * kLanes);
+    hn::Store(left[p], d, buffers.totals[kUpright + slopes] + p * kLanes);
   }
 }
 
-HWY_INLINE void SumSlope(const EdgeBands& bands, const SearchBuffers& buffers,
-                         std::int16_t* totals) {
-  const hn::CappedTag<std::int16_t, Search::kPlaces> d;
-  constexpr int kLanes = static_cast<int>(hn::MaxLanes(d)), kParts = Search::kPlaces / kLanes;
-  hn::Vec<decltype(d)> sums[kParts];
-  for (auto& sum : sums) sum = hn::Zero(d);
-  for (int band = 0; band < bands.count; ++band) {
-    const std::int16_t* from = buffers.responses[band] + buffers.starts[band];
-    for (int p = 0; p < kParts; ++p) sums[p] = hn::Add(sums[p], hn::LoadU(d, from + p * kLanes));
-  }
-  for (int p = 0; p < kParts; ++p) hn::Store(sums[p], d, totals + p * kLanes);
-}
-
-HWY_INLINE FoundEdge Highest(const Search& search, const SearchBuffers& buffers) {
+HWY_INLINE FoundEdge Highest(const EdgeSearch& search, const SearchBuffers& buffers) {
   const hn::CappedTag<float, kEdgeLanes> d;
   const hn::RebindToSigned<decltype(d)> di;
   const hn::Rebind<std::int16_t, decltype(d)> d16;
-  alignas(64) float shares[Search::kPlaces], values[Search::kPlaces];
-  alignas(64) std::int32_t slopes[Search::kPlaces];
-  for (int i = 0; i < Search::kPlaces; ++i) shares[i] = share_of(i);
-  for (int i = 0; i < Search::kPlaces; i += static_cast<int>(hn::Lanes(d))) {
+  alignas(64) float values[EdgeSearch::kPlaces];
+  alignas(64) std::int32_t slopes[EdgeSearch::kPlaces];
+  for (int i = 0; i < EdgeSearch::kPlaces; i += static_cast<int>(hn::Lanes(d))) {
     auto best = hn::Set(d, -1e9F);
     auto slope = hn::Zero(di);
-    for (int s = 0; s < Search::kSlopes; ++s) {
+    for (int s = 0; s < EdgeSearch::kSlopes; ++s) {
       const auto total = hn::ConvertTo(d, hn::PromoteTo(di, hn::Load(d16, buffers.totals[s] + i)));
-      const auto value = hn::Mul(total, hn::Load(d, shares + i));
+      const auto value = hn::Mul(total, hn::Load(d, kShares.data() + i));
       slope = hn::IfThenElse(hn::RebindMask(di, hn::Gt(value, best)), hn::Set(di, s), slope);
       best = hn::Max(best, value);
     }
     hn::Store(best, d, values + i);
     hn::Store(slope, di, slopes + i);
   }
-  constexpr int kCentre = Search::kPlaces / 2;
+  constexpr int kCentre = EdgeSearch::kPlaces / 2;
   FoundEdge found{slopes[kCentre - search.reach], kCentre - search.reach};
-  for (int i = kCentre - search.reach; i <= std::min(kCentre + search.reach, Search::kPlaces - 1);
-       ++i) {
+  for (int i = kCentre - search.reach;
+       i <= std::min(kCentre + search.reach, EdgeSearch::kPlaces - 1); ++i) {
     const float higher = values[i] - values[found.place];
     if (higher > 0 || (higher == 0 && slopes[i] < found.slope)) found = {slopes[i], i};
   }
   return found;
 }
 
-FoundEdge FindEdge(const EdgeBands& bands, const Search& search) {
+FoundEdge FindEdge(const EdgeBands& bands, const EdgeSearch& search) {
   SearchBuffers buffers;
-  Respond(bands, search, buffers);
-  for (int s = 0; s < Search::kSlopes; ++s) {
-    Start(bands, slope_of(search, s), buffers);
-    SumSlope(bands, buffers, buffers.totals[s]);
-  }
+  for (int i = 0; i < EdgeSearch::kColumns; i += kLanes) SumResponses(bands, search, i, buffers);
+  SumSlopes(bands, 0, 0, buffers);
+  for (int slopes = 1; slopes <= kUpright; ++slopes) SumSlopes(bands, search.foot, slopes, buffers);
   return Highest(search, buffers);
 }
 
@@ -153,21 +178,21 @@ FoundEdge find_edge_plain(const EdgeBands& bands, const EdgeSearch& search) {
   const auto response = [&](int band, int i) {
     const std::uint16_t* at = bands.sums + band * bands.pitch + search.first_column + i;
     const auto bend = static_cast<std::int16_t>(at[bands.flank] - 2 * at[0] + at[-bands.flank]);
-    const int value = search.sign * std::clamp(bend / bands.flank, -search.limit, search.limit);
+    const int most = search.limit * bands.flank;
+    const int scaled = std::clamp<int>(bend, -most, most) * share_of_flank(bands, search);
+    const int value = (scaled + (1 << 14)) >> 15;
     return band < bands.horizon ? std::max(value, (-11 * value) >> 4) : value;
   };
   float highest = -1e9F;
   FoundEdge found;
-  constexpr int kCentre = Search::kPlaces / 2;
-  for (int s = 0; s < Search::kSlopes; ++s) {
-    for (int i = kCentre - search.reach; i <= std::min(kCentre + search.reach, Search::kPlaces - 1);
-         ++i) {
+  constexpr int kCentre = EdgeSearch::kPlaces / 2;
+  for (int s = 0; s < EdgeSearch::kSlopes; ++s) {
+    for (int i = kCentre - search.reach;
+         i <= std::min(kCentre + search.reach, EdgeSearch::kPlaces - 1); ++i) {
       int total = 0;
       for (int band = 0; band < bands.count; ++band) {
-        const float row = bands.first_row + bands.row_step * static_cast<float>(band);
-        const int shift =
-            static_cast<int>(row * slope_of(search, s) + (kFar + 0.5F)) - static_cast<int>(kFar);
-        total += response(band, std::clamp(kMiddle + shift, 0, 2 * kMiddle) + i);
+        const int shift = shift_at(std::abs(s - kUpright), search.foot - band);
+        total += response(band, kMiddle + (s < kUpright ? shift : -shift) + i);
       }
       const float value = static_cast<float>(total) * share_of(i);
       if (value <= highest) continue;

@@ -9,7 +9,6 @@
 namespace bole {
 namespace {
 
-constexpr float kSlopeStep = 0.015F;  // columns a row
 constexpr float kContrast = 0.22F * Bands::kScale;
 constexpr float kStrongContrast = 1.2F * Bands::kScale;
 constexpr float kLeastSum = 1.0F;    // of the contrast above another foot, in full bands
@@ -25,13 +24,14 @@ float response(const std::uint16_t* sum, int x, int k) {
 int nearest(float x) { return static_cast<int>(x + 16384.5F) - 16384; }
 
 // The line along which an edge of contrast `sign` stands out most, at most `reach` columns from
-// `column` at the foot.
-EdgeLine search(const EdgeBands& bands, float column, int reach, int sign) {
+// `column` at the foot, so many bands below the first one.
+EdgeLine search(const EdgeBands& bands, int foot, float column, int reach, int sign) {
   constexpr int kMiddlePlace = EdgeSearch::kPlaces / 2, kUpright = EdgeSearch::kSlopes / 2;
+  constexpr float kSlopeStep = EdgeSearch::kSlopeStep / 1000.0F;  // columns a row
   const int middle = nearest(column);
   const FoundEdge found = find_edge(bands, {.first_column = middle - EdgeSearch::kColumns / 2,
                                             .reach = reach,
-                                            .slope_step = kSlopeStep,
+                                            .foot = foot,
                                             .sign = sign,
                                             .limit = static_cast<int>(kContrast)});
   return {static_cast<float>(middle + found.place - kMiddlePlace),
@@ -146,8 +146,9 @@ bool EdgeFitter::fit(const Bands& bands, const Candidate& c, TrunkShape& shape,
   const int reach = std::min(10, static_cast<int>(1 + 0.05F * c.width));
   const int sign = c.dark ? 1 : -1;
   const EdgeBands edges = along(bands, straight, c.foot, flank);
-  const EdgeLine left = search(edges, c.left, reach, -sign);
-  const EdgeLine right = search(edges, c.left + c.width, reach, sign);
+  const int foot = nearest(c.foot / Bands::kRows) - straight.first;
+  const EdgeLine left = search(edges, foot, c.left, reach, -sign);
+  const EdgeLine right = search(edges, foot, c.left + c.width, reach, sign);
   if (right.column - left.column < 2.5F) return false;
   shape = {.foot = c.foot,
            .left = left.column,

@@ -177,7 +177,7 @@ TEST_P(Kernels, FindEdgesAsThePlainLoops) {
     const EdgeBands bands = rough.bands(2 + seed % 7);
     const EdgeSearch search{.first_column = 280 + seed % 30,
                             .reach = 2 + seed % 9,
-                            .slope_step = 0.015F,
+                            .foot = bands.count + seed % 20,
                             .sign = seed % 5 == 0 ? -1 : 1,
                             .limit = 56};
     EXPECT_EQ(find_edge(bands, search), find_edge_plain(bands, search)) << seed;
