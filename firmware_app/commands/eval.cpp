@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -24,11 +25,17 @@ struct Run {
   Detections detections, tracked;
 };
 
-// Ids of the frame's trees that are published; the others do not enter the tracks.
+// What boled makes of the frames of a drive.
 class DriveTracker {
  public:
-  std::vector<Tree> update(const TruthFrame& frame, std::vector<Tree> trees, double min_score) {
-    std::erase_if(trees, [&](const Tree& tree) { return tree.score < min_score; });
+  DriveTracker(DetectorMode mode, double min_score)
+      : tracker_(mode == DetectorMode::bole ? Tracker::Scores::probabilities
+                                            : Tracker::Scores::ranks),
+        least_score_(mode == DetectorMode::bole ? 0 : min_score) {}
+
+  std::vector<Tree> update(const TruthFrame& frame, std::vector<Tree> trees) {
+    std::erase_if(trees, [&](const Tree& tree) { return tree.score < least_score_; });
+    trees.resize(std::min(trees.size(), Tracker::kMostTrees));
     if (frame.world != world_ || frame.utime <= utime_) tracker_.reset();
     tracker_.update(trees, static_cast<double>(frame.utime - utime_) * 1e-6);
     world_ = frame.world;
@@ -38,21 +45,21 @@ class DriveTracker {
 
  private:
   Tracker tracker_;
+  double least_score_;
   int world_ = -1;
   std::int64_t utime_ = 0;
 };
 
-Run run(ImageDetector& detector, const Truth& truth, const Options& options) {
+Run run(ImageDetector& detector, DetectorMode mode, const Truth& truth, const Options& options) {
   Run result;
-  DriveTracker tracker;
+  DriveTracker tracker(mode, options.min_score);
   int done = 0;
   for (const TruthFrame& frame : truth.frames) {
     const fs::path file = fs::path(options.folder) / frame.file;
     try {
       const std::span<const Tree> trees = detector.detect(read_picture(file));
       result.detections[frame.file].assign(trees.begin(), trees.end());
-      result.tracked[frame.file] =
-          tracker.update(frame, result.detections[frame.file], options.min_score);
+      result.tracked[frame.file] = tracker.update(frame, result.detections[frame.file]);
     } catch (const std::runtime_error& error) {
       throw ConfigError(file.string(), "", error.what(), "every frame of the truth is needed");
     }
@@ -66,7 +73,8 @@ void eval(const Options& options) {
   if (truth.frames.empty()) throw ConfigError(options.truth, "frames", "is empty", "");
   ImageDetector ours(options.camera, DetectorMode::bole);
   ImageDetector paper(options.camera, DetectorMode::paper);
-  const Run our_run = run(ours, truth, options), paper_run = run(paper, truth, options);
+  const Run our_run = run(ours, DetectorMode::bole, truth, options);
+  const Run paper_run = run(paper, DetectorMode::paper, truth, options);
   const auto evaluated = [&](const Run& r) {
     return evaluate(truth, r.detections, r.tracked, ours.table().panorama(), options.min_score);
   };

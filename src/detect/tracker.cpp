@@ -11,44 +11,40 @@ namespace {
 
 constexpr double kForgetAfter = 3.0;  // seconds a tree may stay unseen and keep its id
 constexpr std::size_t kMostTracks = 256;
-constexpr std::size_t kMostTrees = 256;   // of a frame, that room is made for
-constexpr double kGate = 16.0;            // squared misfit, in variances
-constexpr double kDiameterSpread = 0.35;  // of log diameter between two sightings of one tree
-// What disturbs one frame (a slope, a root, the robot's pitch) disturbs the next one alike: each
-// sighting after the first counts for a quarter of one.
-constexpr double kAlike = 4.0;
+constexpr double kGate = 30.0;         // misfit at which a sighting is no more of a track
+constexpr double kWidthSpread = 0.2;   // of log angular width between two sightings of one tree
+constexpr double kPartlySeen = 8.0;    // most that a wrong width costs: half a trunk may be lit
+constexpr double kPartOfWidth = 0.3;   // that its middle is off by then
+constexpr double kBeyondEdge = 0.15;   // of a tree's width, that a part of it may stand out
+constexpr double kNearer = 0.6;        // metres that a part of a tree may seem nearer
+constexpr double kPartOfRange = 0.05;  // that a range is off by when another foot is found
 
 double squared(double x) { return x * x; }
 
-// How well a place is known, across and along the line of sight, and how far it may lie off.
-struct LineOfSight {
-  double bearing, range;
-  double bearing_variance, range_variance;
-};
-
-LineOfSight seen_from(const GroundPoint& p, double xx, double xy, double yy) {
-  const double range = std::max(std::hypot(p.x, p.y), 0.05);
-  const double c = p.x / range, s = p.y / range;
-  return {std::atan2(p.y, p.x), range, (s * s * xx - 2 * c * s * xy + c * c * yy) / (range * range),
-          c * c * xx + 2 * c * s * xy + s * s * yy};
-}
-
-double bearing_variance(const Tree& tree) { return squared(std::max(tree.bearing_sigma, 0.003F)); }
-// A robot that pitches by 0.2 degrees a frame shifts the foot of a tree at r metres by about
-// 0.004 r^2 metres, whatever the detector knows.
-double range_variance(const Tree& tree) {
-  return squared(std::max(tree.range_sigma, 0.004F * tree.range * tree.range + 0.02F));
-}
-double diameter_variance(const Tree& tree) { return squared(std::max(tree.diameter_sigma, 0.01F)); }
-
 // No two trees this far apart are ever taken for one, however badly their range is known.
-double farthest_step(double range) { return std::max(0.9, 0.12 * range); }
+double farthest_step(double range) { return std::max(1.0, 0.25 * range); }
+
+// Whether what is seen lies within the outline of the track, and may be as far away.
+bool covers(const Track& track, const Tree& tree) {
+  const GroundPoint at = track.position();
+  const double turn = std::abs(wrap_angle(tree.bearing - std::atan2(at.y, at.x)));
+  const double width = angular_width(track.diameter(), track.range());
+  const double behind = tree.range - track.range();
+  return turn + tree.angular_width / 2 < (0.5 + kBeyondEdge) * width && behind > -kNearer &&
+         behind < farthest_step(track.range());
+}
+
+// A standard deviation that fades from what is known to what may be, by the share `kept`.
+double faded(double known, double any, double kept) {
+  return std::sqrt(squared(kept * known) + (1 - squared(kept)) * squared(any));
+}
 
 }  // namespace
 
-Tracker::Tracker() {
+Tracker::Tracker(Scores scores) : scores_(scores) {
   tracks_.reserve(kMostTracks + kMostTrees);
   sightings_.reserve(kMostTrees);
+  paired_.reserve(kMostTracks + kMostTrees);
   costs_.reserve(kMostTrees * (kMostTracks + kMostTrees));
   assignment_.reserve(kMostTrees, kMostTracks + kMostTrees);
 }
@@ -59,51 +55,48 @@ void Tracker::reset() {
   motion_seconds_.reset();
 }
 
-// The robot goes on as it went, as far as that is known, within what it can accelerate; and however
-// it was seen to go, it is a ground robot, of limited speed. Where no tree tells its motion any
-// more, the second wins: it is taken to stand still, at any speed it may have.
+// The robot goes on as it went, less and less surely (Ornstein and Uhlenbeck's process): where no
+// tree tells its motion any more it is taken to stand still, at any speed that a ground robot has.
 MotionEstimate Tracker::prior(double elapsed) const {
+  constexpr double kShiftSeconds = 30, kTurnSeconds = 0.5;
   const MotionEstimate any{{}, 0.02 + 1.5 * elapsed, 0.01 + 0.5 * elapsed};
   if (!motion_seconds_ || *motion_seconds_ <= 0) return any;
   const double ratio = elapsed / *motion_seconds_;
-  const double shift =
-      squared(motion_.shift_sigma * ratio) + squared(0.01 + 3.0 * elapsed * elapsed);
-  const double turn =
-      squared(motion_.turn_sigma * ratio) + squared(0.005 + 5.0 * elapsed * elapsed);
-  const double shift_share = squared(any.shift_sigma) / (squared(any.shift_sigma) + shift);
-  const double turn_share = squared(any.turn_sigma) / (squared(any.turn_sigma) + turn);
-  return {{motion_.mean.forward * ratio * shift_share, motion_.mean.left * ratio * shift_share,
-           motion_.mean.turn * ratio * turn_share},
-          std::sqrt(shift * shift_share),
-          std::sqrt(turn * turn_share)};
+  const double shift = std::exp(-elapsed / kShiftSeconds), turn = std::exp(-elapsed / kTurnSeconds);
+  const EgoMotion& last = motion_.mean;
+  return {{shift * ratio * last.forward, shift * ratio * last.left, turn * ratio * last.turn},
+          faded(motion_.shift_sigma * ratio, any.shift_sigma, shift),
+          faded(motion_.turn_sigma * ratio, any.turn_sigma, turn)};
 }
 
 std::span<const int> Tracker::match(std::span<const Tree> trees, const MotionEstimate& motion) {
   costs_.assign(trees.size() * tracks_.size(), Assignment::kForbidden);
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
-    const Track& track = tracks_[k];
-    // The track's covariance is turned with it only once the motion is settled: the turn is small.
-    const LineOfSight expected =
-        seen_from(moved(track.position, motion.mean), track.xx, track.xy, track.yy);
-    const double reach =
-        farthest_step(expected.range) + motion.shift_sigma + motion.turn_sigma * expected.range;
     for (std::size_t i = 0; i < trees.size(); ++i) {
-      const Tree& tree = trees[i];
-      const double bearing_error = wrap_angle(tree.bearing - expected.bearing);
-      const double range_error = tree.range - expected.range;
-      if (std::hypot(range_error, bearing_error * expected.range) > reach) continue;
-      const double shift = squared(motion.shift_sigma);
-      const double across = expected.bearing_variance + bearing_variance(tree) +
-                            squared(motion.turn_sigma) + shift / squared(expected.range);
-      const double along = expected.range_variance + range_variance(tree) + shift;
-      const double misfit = squared(bearing_error) / across + squared(range_error) / along;
-      if (misfit > kGate) continue;
-      const double shape = std::log(std::max(tree.diameter, 0.01F) / track.diameter);
-      costs_[i * tracks_.size() + k] = misfit + squared(shape / kDiameterSpread) + track.unseen;
+      costs_[i * tracks_.size() + k] = cost_of(trees[i], tracks_[k], motion);
     }
   }
   return assignment_.solve(costs_, static_cast<int>(trees.size()), static_cast<int>(tracks_.size()),
                            2 * kGate);
+}
+
+double Tracker::cost_of(const Tree& tree, const Track& track, const MotionEstimate& motion) {
+  const GroundPoint at = moved(track.position(), motion.mean);
+  const double range = std::hypot(at.x, at.y);
+  const double turn = wrap_angle(tree.bearing - std::atan2(at.y, at.x));
+  const double reach = farthest_step(range) + motion.shift_sigma + motion.turn_sigma * range;
+  if (std::hypot(tree.range - range, turn * range) > reach) return Assignment::kForbidden;
+  const Track::Expectation expected = track.expect(tree);
+  const double step = tree.range - range - (expected.range - track.range());
+  const double width = angular_width(track.diameter(), range);
+  const double shift = squared(motion.shift_sigma);
+  const double across = expected.bearing_variance + squared(kPartOfWidth * width) +
+                        squared(motion.turn_sigma) + shift / squared(range);
+  const double along = expected.range_variance + squared(kPartOfRange * range) + shift;
+  const double ratio = std::log(std::max(tree.angular_width, 0.001F) / width) / kWidthSpread;
+  const double shape = ratio > 0 ? squared(ratio) : std::min(squared(ratio), kPartlySeen);
+  const double misfit = squared(turn) / across + squared(step) / along + shape;
+  return misfit > kGate ? Assignment::kForbidden : misfit + track.unseen();
 }
 
 // Pairs and motion depend on each other: pair with the slack of the prior, estimate, pair anew with
@@ -116,76 +109,31 @@ MotionEstimate Tracker::estimate(std::span<const Tree> trees, const MotionEstima
     for (std::size_t i = 0; i < trees.size(); ++i) {
       if (pairs[i] < 0) continue;
       const Track& track = tracks_[pairs[i]];
-      const LineOfSight known = seen_from(track.position, track.xx, track.xy, track.yy);
-      sightings_.push_back({track.position, trees[i].bearing, trees[i].range,
-                            known.bearing_variance + bearing_variance(trees[i]),
-                            known.range_variance + range_variance(trees[i])});
+      const Track::Expectation expected = track.expect(trees[i]);
+      sightings_.push_back({track.position(), trees[i].bearing,
+                            trees[i].range - (expected.range - track.range()),
+                            expected.bearing_variance, expected.range_variance});
     }
     motion = estimate_motion(sightings_, prior);
   }
   return motion;
 }
 
-void Tracker::move_tracks(const EgoMotion& motion, double elapsed) {
-  const double c = std::cos(motion.turn), s = std::sin(motion.turn);
-  for (Track& track : tracks_) {
-    track.position = moved(track.position, motion);
-    const double xx = track.xx, xy = track.xy, yy = track.yy;
-    // What the motion's own error adds grows with the distance, through the turn.
-    const double noise =
-        squared(0.01 + 0.003 * std::hypot(track.position.x, track.position.y)) * (elapsed / 0.1);
-    track.xx = c * c * xx + 2 * c * s * xy + s * s * yy + noise;
-    track.xy = c * s * (yy - xx) + (c * c - s * s) * xy;
-    track.yy = s * s * xx - 2 * c * s * xy + c * c * yy + noise;
-    track.unseen += elapsed;
+// Now a whole trunk stands out and now the half of it that is lit. What lies within the outline of
+// a tree that is known better and not seen otherwise is that tree: one behind it would be hidden.
+// The track that the part had is forgotten.
+int Tracker::whole(const Tree& part, int track) {
+  int best = track;
+  for (std::size_t k = 0; k < paired_.size(); ++k) {
+    const double sightings = best < 0 ? 0 : tracks_[best].sightings();
+    if (paired_[k] == 0 && tracks_[k].sightings() > sightings && covers(tracks_[k], part))
+      best = static_cast<int>(k);
   }
-}
-
-// Kalman's update in the axes of the line of sight, where both covariances are nearly diagonal.
-void Tracker::fuse(Track& track, Tree& tree) {
-  const LineOfSight known = seen_from(track.position, track.xx, track.xy, track.yy);
-  const double across = bearing_variance(tree), along = kAlike * range_variance(tree);
-  const double across_gain = known.bearing_variance / (known.bearing_variance + across);
-  const double along_gain = known.range_variance / (known.range_variance + along);
-  const double bearing =
-      wrap_angle(known.bearing + across_gain * wrap_angle(tree.bearing - known.bearing));
-  const double range = known.range + along_gain * (tree.range - known.range);
-  const double across_variance = (1 - across_gain) * known.bearing_variance * squared(range);
-  const double along_variance = (1 - along_gain) * known.range_variance;
-  const double c = std::cos(bearing), s = std::sin(bearing);
-  track.position = {range * c, range * s};
-  track.xx = c * c * along_variance + s * s * across_variance;
-  track.xy = c * s * (along_variance - across_variance);
-  track.yy = s * s * along_variance + c * c * across_variance;
-
-  const double noise = kAlike * diameter_variance(tree);
-  const double gain = track.diameter_variance / (track.diameter_variance + noise);
-  track.diameter += gain * (tree.diameter - track.diameter);
-  track.diameter_variance = (1 - gain) * track.diameter_variance + squared(0.001);
-  track.unseen = 0;
-
-  tree.id = track.id;
-  tree.bearing = static_cast<float>(bearing);
-  tree.range = static_cast<float>(range);
-  tree.diameter = static_cast<float>(track.diameter);
-  tree.bearing_sigma = static_cast<float>(std::sqrt(across_variance) / range);
-  tree.range_sigma = static_cast<float>(std::sqrt(along_variance));
-  tree.diameter_sigma = static_cast<float>(std::sqrt(track.diameter_variance));
-  tree.angular_width = static_cast<float>(angular_width(track.diameter, range));
-}
-
-Tracker::Track Tracker::begin(Tree& tree) {
-  tree.id = next_id_++;
-  const double c = std::cos(tree.bearing), s = std::sin(tree.bearing);
-  const double along = range_variance(tree), across = bearing_variance(tree) * squared(tree.range);
-  return {.id = tree.id,
-          .position = {tree.range * c, tree.range * s},
-          .xx = c * c * along + s * s * across,
-          .xy = c * s * (along - across),
-          .yy = s * s * along + c * c * across,
-          .diameter = std::max(tree.diameter, 0.01F),
-          .diameter_variance = diameter_variance(tree),
-          .unseen = 0};
+  if (best != track) {
+    paired_[best] = 1;
+    if (track >= 0) tracks_[track].forget();
+  }
+  return best;
 }
 
 void Tracker::update(std::span<Tree> trees, double elapsed,
@@ -198,22 +146,29 @@ void Tracker::update(std::span<Tree> trees, double elapsed,
   const bool first = tracks_.empty();
   motion_ = odometry ? MotionEstimate{*odometry, 0.01, 0.005} : estimate(trees, prior(elapsed));
   motion_seconds_ = first ? std::nullopt : std::optional(elapsed);
-  move_tracks(motion_.mean, elapsed);
+  for (Track& track : tracks_) track.move(motion_, elapsed);
 
   // However badly the motion is known: an id that jumps a metre is worse than a new one.
   const std::span<const int> pairs =
       match(trees, {{}, std::min(motion_.shift_sigma, 0.05), std::min(motion_.turn_sigma, 0.01)});
-  for (std::size_t i = 0; i < trees.size(); ++i) {
-    if (pairs[i] >= 0) {
-      fuse(tracks_[pairs[i]], trees[i]);
-    } else if (tracks_.size() < kMostTracks + kMostTrees) {
-      tracks_.push_back(begin(trees[i]));
-    }
+  paired_.assign(tracks_.size(), 0);
+  for (const int k : pairs) {
+    if (k >= 0) paired_[k] = 1;
   }
-  std::erase_if(tracks_, [](const Track& track) { return track.unseen > kForgetAfter; });
+  for (std::size_t i = 0; i < trees.size(); ++i) {
+    const float score = trees[i].score;
+    const int k = whole(trees[i], pairs[i]);
+    if (k >= 0) {
+      tracks_[k].see(trees[i]);
+    } else if (tracks_.size() < kMostTracks + kMostTrees) {
+      tracks_.emplace_back(next_id_++, trees[i]);
+    }
+    if (scores_ == Scores::ranks) trees[i].score = score;
+  }
+  std::erase_if(tracks_, [](const Track& track) { return track.unseen() > kForgetAfter; });
   if (tracks_.size() > kMostTracks) {  // the longest unseen go first
     std::ranges::nth_element(tracks_, tracks_.begin() + kMostTracks, {}, &Track::unseen);
-    tracks_.resize(kMostTracks);
+    tracks_.erase(tracks_.begin() + kMostTracks, tracks_.end());
   }
 }
 

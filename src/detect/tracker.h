@@ -7,21 +7,28 @@
 
 #include "detect/assignment.h"
 #include "detect/ego_motion.h"
+#include "detect/track.h"
 #include "detect/tree.h"
 
 namespace bole {
 
-/// Keeps the ids of trees stable while the robot drives, and sharpens range and diameter from frame
-/// to frame. Adds no latency: every tree handed in is handed out, none is held back to be
-/// confirmed, none is invented that this frame does not show.
+/// Keeps the ids of trees stable while the robot drives, and sharpens score, range and diameter
+/// from frame to frame. Adds no latency: every tree handed in is handed out, none is held back to
+/// be confirmed, none is invented that this frame does not show.
 class Tracker {
  public:
-  Tracker();
+  /// Of one frame, that are worth tracking: twice what a list holds.
+  static constexpr std::size_t kMostTrees = 64;
 
-  /// Gives each tree of one frame its id, and replaces bearing, range, diameter, their sigmas and
-  /// angular_width by the estimate from this and the earlier frames. `elapsed`: seconds since the
-  /// last frame. `odometry`: the motion since then where it is measured; else it is estimated from
-  /// the trees themselves.
+  /// `scores`: what those of the trees mean. Only probabilities are sharpened by time.
+  enum class Scores { probabilities, ranks };
+  explicit Tracker(Scores scores = Scores::probabilities);
+
+  /// Gives each tree of one frame its id, and replaces score, bearing, range, diameter, their
+  /// sigmas and angular_width by the estimate from this and the earlier frames. Hand in improbable
+  /// trees too, down to a score of 0.05: they may be what is seen of a probable one. Allocates
+  /// nothing for up to kMostTrees. `elapsed`: seconds since the last frame. `odometry`: the motion
+  /// since then where it is measured; else it is estimated from the trees themselves.
   void update(std::span<Tree> trees, double elapsed, const std::optional<EgoMotion>& odometry = {});
 
   /// The motion between the last two frames, as measured or estimated.
@@ -31,23 +38,17 @@ class Tracker {
   void reset();
 
  private:
-  struct Track {
-    std::int32_t id = 0;
-    GroundPoint position;           // robot frame of the last frame
-    double xx = 0, xy = 0, yy = 0;  // its covariance, square metres
-    double diameter = 0, diameter_variance = 0;
-    double unseen = 0;  // seconds
-  };
-
   MotionEstimate prior(double elapsed) const;
   MotionEstimate estimate(std::span<const Tree> trees, const MotionEstimate& prior);
   /// The track of each tree, -1 for none, if the robot has moved by `motion`, within its sigmas.
   std::span<const int> match(std::span<const Tree> trees, const MotionEstimate& motion);
-  void move_tracks(const EgoMotion& motion, double elapsed);
-  static void fuse(Track& track, Tree& tree);
-  Track begin(Tree& tree);
+  static double cost_of(const Tree& tree, const Track& track, const MotionEstimate& motion);
+  /// The track that a sighting, paired with `track` (-1: none), is part of.
+  int whole(const Tree& part, int track);
 
+  Scores scores_;
   std::vector<Track> tracks_;
+  std::vector<char> paired_;  // tracks with a sighting in this frame
   MotionEstimate motion_;
   std::optional<double> motion_seconds_;  // what motion_ took; nothing before the second frame
   std::int32_t next_id_ = 0;

@@ -50,10 +50,18 @@ std::vector<std::pair<std::string, std::string>> lines_of(const Evaluation& e) {
       {"pixels: true-positive rate", fixed(pixels.true_positive_rate, 3)},
       {"pixels: false-positive rate", fixed(pixels.false_positive_rate, 4)},
       {"pixels: overlap, median of frames", text(e.pixels.overlap, 3)}};
-  if (e.tracking) {
-    lines.emplace_back("tracking: IDF1", fixed(e.tracking->idf1, 3));
-    lines.emplace_back("tracking: id switches", std::to_string(e.tracking->id_switches));
-    lines.emplace_back("tracking: id swaps over 1 m", std::to_string(e.tracking->id_swaps));
+  if (e.tracked) {
+    const TrackedEvaluation& t = *e.tracked;
+    lines.insert(lines.end(),
+                 {{"tracked: IDF1", fixed(t.ids.idf1, 3)},
+                  {"tracked: id switches", std::to_string(t.ids.id_switches)},
+                  {"tracked: id swaps over 1 m", std::to_string(t.ids.id_swaps)},
+                  {"tracked: precision", fixed(t.figures.precision, 4)},
+                  {"tracked: recall", fixed(t.figures.recall, 4)},
+                  {"tracked: position error, median, m", text(t.figures.dp, 3)},
+                  {"tracked: diameter error, median, m", text(t.figures.dw, 3)},
+                  {"tracked: calibration error", fixed(t.calibration_error, 3)},
+                  {"tracked: range within 2 sigma", fixed(t.range_trust.share_within_2_sigma, 3)}});
   }
   return lines;
 }
@@ -71,7 +79,11 @@ Evaluation evaluate(const Truth& truth, const Detections& detections, const Dete
   e.reliability = measure_reliability(outcomes);
   e.range_trust = measure_range_trust(truth, detections, min_score);
   e.pixels = measure_pixel_rates(truth, detections, panorama, min_score);
-  if (have_ids(truth)) e.tracking = measure_tracking(truth, tracked, min_score);
+  if (have_ids(truth)) {
+    e.tracked = {measure_tracking(truth, tracked, min_score), measure(truth, tracked, min_score),
+                 measure_reliability(outcomes_of(truth, tracked, 0)).calibration_error,
+                 measure_range_trust(truth, tracked, min_score)};
+  }
   return e;
 }
 
@@ -87,10 +99,14 @@ std::string to_json(const Evaluation& e) {
   json["pixel_false_positive_rate"] = pixels.false_positive_rate;
   json["pixel_overlap"] =
       e.pixels.overlap ? nlohmann::ordered_json(*e.pixels.overlap) : nlohmann::ordered_json();
-  if (e.tracking) {
-    json["idf1"] = e.tracking->idf1;
-    json["id_switches"] = e.tracking->id_switches;
-    json["id_swaps"] = e.tracking->id_swaps;
+  if (e.tracked) {
+    auto tracked = nlohmann::ordered_json::parse(to_json(e.tracked->figures));
+    tracked["idf1"] = e.tracked->ids.idf1;
+    tracked["id_switches"] = e.tracked->ids.id_switches;
+    tracked["id_swaps"] = e.tracked->ids.id_swaps;
+    tracked["calibration_error"] = e.tracked->calibration_error;
+    tracked["range_within_2_sigma"] = e.tracked->range_trust.share_within_2_sigma;
+    json["tracked"] = tracked;
   }
   return json.dump();
 }

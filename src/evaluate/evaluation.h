@@ -7,6 +7,14 @@
 
 namespace bole {
 
+/// All that is measured of the lists of drives once they are tracked.
+struct TrackedEvaluation {
+  TrackingFigures ids;
+  Figures figures;  ///< of trees with at least min_score
+  double calibration_error = 0;
+  RangeTrust range_trust;
+};
+
 /// All that is measured of one detector on one set of frames.
 struct Evaluation {
   double min_score = 0.5;
@@ -16,7 +24,7 @@ struct Evaluation {
   Reliability reliability;
   RangeTrust range_trust;
   PixelRates pixels;
-  std::optional<TrackingFigures> tracking;  ///< where frames have ids
+  std::optional<TrackedEvaluation> tracked;  ///< where frames have ids
 };
 
 /// `detections`: each frame by itself, any score; `tracked`: the same with ids.

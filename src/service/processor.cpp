@@ -1,7 +1,6 @@
 #include "service/processor.h"
 
 #include <algorithm>
-#include <iterator>
 
 namespace bole {
 namespace {
@@ -19,7 +18,9 @@ Processor::Processor(const WarpTable& table, double camera_height, const Search&
           make_detector(options.mode, {table.panorama(), table.seen(), camera_height, search})),
       vision_(table.panorama(), table.seen()),
       options_(std::move(options)),
-      clock_(clock) {
+      sharpened_(options_.track && options_.mode == DetectorMode::bole),
+      clock_(clock),
+      tracker_(sharpened_ ? Tracker::Scores::probabilities : Tracker::Scores::ranks) {
   list_.camera = options_.camera;
   list_.config_crc = options_.config_crc;
   list_.source = options_.source;
@@ -28,9 +29,15 @@ Processor::Processor(const WarpTable& table, double camera_height, const Search&
 }
 
 void Processor::choose(std::span<const Tree> found) {
-  trees_.clear();
-  std::ranges::copy_if(found, std::back_inserter(trees_), [this](const Tree& tree) {
-    return tree.score >= static_cast<float>(options_.min_score);
+  trees_.assign(found.begin(), found.end());
+  // Else the history of each decides: see track.
+  if (!sharpened_) leave_out_improbable();
+  if (options_.track) trees_.resize(std::min(trees_.size(), Tracker::kMostTrees));
+}
+
+void Processor::leave_out_improbable() {
+  std::erase_if(trees_, [this](const Tree& tree) {
+    return tree.score < static_cast<float>(options_.min_score);
   });
 }
 
@@ -40,6 +47,7 @@ void Processor::track(std::int64_t captured_ns) {
   if (last_captured_ns_ && (elapsed <= 0 || elapsed > kLongestGap)) tracker_.reset();
   tracker_.update(trees_, std::max(elapsed, 0.0));
   last_captured_ns_ = captured_ns;
+  leave_out_improbable();
 }
 
 Processor::Result Processor::process(const Frame& frame) {

@@ -55,17 +55,19 @@ class Processor {
 
  private:
   void choose(std::span<const Tree> found);
+  void leave_out_improbable();
   void track(std::int64_t captured_ns);
 
   Warper warper_;
   std::unique_ptr<Detector> detector_;
-  Tracker tracker_;
   VisionHealth vision_;
   TreeListEncoder encoder_;
   const ProcessorOptions options_;
+  const bool sharpened_;  // scores by tracking
   const Clock& clock_;
   TreeList list_;
   std::vector<Tree> trees_;
+  Tracker tracker_;
   std::optional<std::int64_t> last_captured_ns_;
 };
 

@@ -204,6 +204,73 @@ TEST(Tracker, PublishesEachTreeAtOnceAndNoneThatIsNotSeen) {
   EXPECT_EQ(one[0].id, 0) << "a tree hidden for a frame keeps its id";
 }
 
+// One tree, ahead of a robot that stands, seen with these scores in frames 0.1 s apart.
+std::vector<float> tracked_scores(const std::vector<float>& scores,
+                                  Tracker::Scores meaning = Tracker::Scores::probabilities) {
+  Tracker tracker(meaning);
+  std::vector<float> result;
+  for (const float score : scores) {
+    std::vector<Tree> one{seen({4, 1, 0.4}, {})};
+    one[0].score = score;
+    tracker.update(one, result.empty() ? 0 : 0.1);
+    result.push_back(one[0].score);
+  }
+  return result;
+}
+
+TEST(Tracker, ScoresATreeByItsHistory) {
+  const std::vector<float> known = tracked_scores({0.8F, 0.8F, 0.8F, 0.8F, 0.8F, 0.8F, 0.8F, 0.3F});
+  EXPECT_GT(known[6], 0.8F);
+  EXPECT_GT(known.back(), 0.5F) << "seen badly once";
+  EXPECT_LT(known.back(), known[6]);
+  const std::vector<float> doubtful =
+      tracked_scores({0.1F, 0.1F, 0.1F, 0.1F, 0.1F, 0.1F, 0.1F, 0.6F});
+  EXPECT_LT(doubtful.back(), 0.5F) << "a rock that once looks like a tree";
+}
+
+TEST(Tracker, ListsANewClearTreeAtOnce) { EXPECT_GT(tracked_scores({0.9F})[0], 0.8F); }
+
+TEST(Tracker, NeverGrowsSureOfWhatIsAlwaysDoubtful) {
+  // Frames of one thing are alike: forty times 0.6 is not forty witnesses.
+  const std::vector<float> scores = tracked_scores(std::vector<float>(40, 0.6F));
+  EXPECT_LT(scores.back(), 0.85F);
+}
+
+TEST(Tracker, LeavesScoresThatAreNoProbabilitiesAsTheyAre) {
+  EXPECT_EQ(tracked_scores({0.9F, 0.2F, 0.7F}, Tracker::Scores::ranks),
+            (std::vector<float>{0.9F, 0.2F, 0.7F}));
+}
+
+TEST(Tracker, TakesTheLitHalfOfATrunkForTheTree) {
+  Tracker tracker;
+  const Tree whole = seen({4, 0, 0.5}, {});
+  Tree half = whole;
+  half.bearing += whole.angular_width / 4;
+  half.angular_width = whole.angular_width / 2;
+  half.diameter = whole.diameter / 2;
+  half.range += 0.9F;
+  std::set<int> ids;
+  for (int frame = 0; frame < 20; ++frame) {
+    std::vector<Tree> one{frame % 3 == 2 ? half : whole};
+    tracker.update(one, frame == 0 ? 0 : 0.1);
+    ids.insert(one[0].id);
+    EXPECT_NEAR(one[0].diameter, whole.diameter, 0.1);
+  }
+  EXPECT_EQ(ids.size(), 1U);
+}
+
+TEST(Tracker, KeepsTheIdOfATreeWhoseRangeJumps) {
+  // Grass hides the foot, and another one is found; middle and width still agree.
+  Tracker tracker;
+  const Tree tree = seen({6, 2, 0.4}, {});
+  std::vector<Tree> one{tree};
+  tracker.update(one, 0);
+  one[0] = tree;
+  one[0].range += 1.0F;
+  tracker.update(one, 0.1);
+  EXPECT_EQ(one[0].id, 0);
+}
+
 TEST(Tracker, NeverGivesTheIdOfAHiddenTreeToItsNeighbourBehind) {
   Tracker tracker;
   std::vector<Tree> near{seen({4, 0, 0.3}, {})};

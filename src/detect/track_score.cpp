@@ -1,0 +1,32 @@
+#include "detect/track_score.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bole {
+namespace {
+
+constexpr double kMemory = 3.3;  // seconds in which a sighting's weight falls to 1 / e
+constexpr double kDoubt = 0.5;   // sightings
+constexpr double kShift = 0.5, kNow = 0.8, kBefore = 0.6;
+
+double log_odds(double probability) {
+  constexpr double kCertain = 1e-4;
+  probability = std::clamp(probability, kCertain, 1 - kCertain);
+  return std::log(probability / (1 - probability));
+}
+
+}  // namespace
+
+float TrackScore::update(float score, double elapsed) {
+  const double kept = std::exp(-elapsed / kMemory);
+  sum_ *= kept;
+  weight_ *= kept;
+  const double now = log_odds(score);
+  const double odds = kShift + kNow * now + kBefore * sum_ / (kDoubt + weight_);
+  sum_ += now;
+  weight_ += 1;
+  return static_cast<float>(1 / (1 + std::exp(-odds)));
+}
+
+}  // namespace bole
