@@ -10,11 +10,18 @@ def cut(file):
     return whole[: len(whole) // 2]
 
 
+def damaged(file):
+    whole = file.read_bytes()
+    middle = len(whole) // 2
+    return whole[:middle] + bytes(~byte & 0xFF for byte in whole[middle : middle + 4]) + whole[middle + 4 :]
+
+
 # What each makes of the absent `path`, given a drive.
 BAD_FRAMES = {
     "missing.jpg": lambda path, drive: None,
     "cut.jpg": lambda path, drive: path.write_bytes(cut(drive / "frame_000000.jpg")),
     "cut.png": lambda path, drive: path.write_bytes(cut(drive / "mask.png")),
+    "damaged.png": lambda path, drive: path.write_bytes(damaged(drive / "mask.png")),
     "no_image.png": lambda path, drive: path.write_text("leaves and needles\n"),
     "empty.jpg": lambda path, drive: path.write_bytes(b""),
     "other_size.pgm": lambda path, drive: path.write_bytes(b"P5 64 48 255\n" + bytes(64 * 48)),

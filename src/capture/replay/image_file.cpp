@@ -9,6 +9,7 @@
 #include "base/files.h"
 #include "capture/replay/codecs.h"
 #include "capture/replay/jpeg.h"
+#include "capture/replay/png.h"
 
 namespace bole {
 namespace {
@@ -17,22 +18,16 @@ std::string shown(ImageSize size) {
   return std::to_string(size.width) + " x " + std::to_string(size.height);
 }
 
-// True when `file` begins as a kind of image does that we decode. OpenCV would hand anything else
-// on to every reader it was built with, down to those of maps and satellite pictures.
+// True when `file` begins as a kind of image does that OpenCV decodes for us. It would hand
+// anything else on to every reader it was built with, down to those of maps and satellite pictures.
 bool is_known_image(std::span<const std::byte> file) {
   const std::string_view head(reinterpret_cast<const char*>(file.data()),
                               std::min<std::size_t>(file.size(), 12));
   const bool webp = head.starts_with("RIFF") && head.ends_with("WEBP");
   const bool netpbm = head.size() > 2 && head[0] == 'P' && head[1] >= '1' && head[1] <= '6';
-  return webp || netpbm || head.starts_with("\x89PNG") || head.starts_with("BM") ||
+  return webp || netpbm || head.starts_with("BM") ||
          head.starts_with(std::string_view("II*\0", 4)) ||
          head.starts_with(std::string_view("MM\0*", 4));
-}
-
-// libpng would report it too, but on standard error.
-bool is_cut_png(std::span<const std::byte> file) {
-  const std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
-  return text.starts_with("\x89PNG") && text.rfind("IEND") == std::string_view::npos;
 }
 
 }  // namespace
@@ -64,8 +59,11 @@ void ImageReader::read(const std::filesystem::path& path, FrameSlot& slot) {
     decode_jpeg(file_, wanted_, slot);
     return;
   }
+  if (is_png(file_)) {
+    decode_png(file_, wanted_, slot);
+    return;
+  }
   if (!is_known_image(file_)) throw UnreadableFrame("is no image");
-  if (is_cut_png(file_)) throw UnreadableFrame("is a PNG image that is cut short");
   std::string problem;
   try {
     problem = replay_codecs().decode_image(file_, slot);

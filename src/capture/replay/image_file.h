@@ -27,8 +27,8 @@ void check_frame_size(ImageSize size, ImageSize wanted);
 void read_frame_file(const std::filesystem::path& path, std::vector<std::byte>& bytes);
 
 /// Reads image files into slots as grey or bgr24, with their pixels as stored: an orientation
-/// noted in the file is not applied, 16 bits become 8, transparency is dropped. JPEG needs no
-/// plug-in, every other format bole_replay_codecs.so.
+/// noted in the file is not applied, 16 bits become 8, transparency is dropped. JPEG and PNG
+/// need no plug-in, every other format bole_replay_codecs.so.
 class ImageReader {
  public:
   /// `wanted`: the size that images must have; zero: any.

@@ -61,6 +61,22 @@ TEST(ReplayImages, KeepGreyGreyAndTakeSixteenBits) {
   EXPECT_EQ(seen.frames[2].bytes, grey_pixels(0x43));
 }
 
+TEST(ReplayImages, DecodePngOfAnyDepthAsOpenCvDoes) {
+  const TemporaryFolder folder;
+  cv::imwrite((folder / "alpha.png").string(), picture(40, 30, CV_8UC4));
+  cv::imwrite((folder / "bits.png").string(), picture(40, 30, CV_8UC1),
+              {cv::IMWRITE_PNG_BILEVEL, 1});
+  cv::imwrite((folder / "deep.png").string(), picture(40, 30, CV_16UC3));
+  ReplayOptions options = options_for(folder.path());
+  options.size = {40, 30};
+  const Replayed seen = replay(options);
+  ASSERT_EQ(seen.frames.size(), 3U) << testing::PrintToString(seen.bad);
+  for (const Seen& frame : seen.frames) {
+    const cv::Mat expected = cv::imdecode(file_bytes(folder / frame.file), cv::IMREAD_ANYCOLOR);
+    EXPECT_TRUE(frame.bytes == pixels(expected)) << frame.file;
+  }
+}
+
 TEST(ReplayImages, OfAnotherSizeOrDamagedAreBad) {
   const TemporaryFolder folder;
   cv::imwrite((folder / "0.png").string(), picture(4, 2));
@@ -76,7 +92,22 @@ TEST(ReplayImages, OfAnotherSizeOrDamagedAreBad) {
   EXPECT_THAT(seen.bad, ElementsAre(HasSubstr("1.png: has 2 x 4 pixels"),
                                     HasSubstr("2.jpg: has 2 x 4 pixels"),
                                     HasSubstr("3.jpg: is a damaged JPEG"),
-                                    HasSubstr("4.png: is a PNG image that is cut short")));
+                                    HasSubstr("4.png: is a damaged PNG image: cut short")));
+}
+
+TEST(ReplayImages, AsPngDamagedInsideAreToldByUsAlone) {
+  const TemporaryFolder folder;
+  for (const char* name : {"0.png", "1.png"}) {
+    cv::imwrite((folder / name).string(), picture(4, 2));
+  }
+  std::fstream file(folder / "1.png", std::ios::binary | std::ios::in | std::ios::out);
+  file.seekp(-20, std::ios::end);  // in the last of the pixels
+  file << "leaf" << std::flush;
+  testing::internal::CaptureStderr();
+  const Replayed seen = replay(options_for(folder.path()));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_THAT(files_of(seen), ElementsAre("0.png"));
+  EXPECT_THAT(seen.bad, ElementsAre(HasSubstr("1.png: is a damaged PNG image")));
 }
 
 TEST(ReplayImages, ThatClaimToBeHugeAreRefusedUndecoded) {
@@ -95,7 +126,9 @@ TEST(ReplayImages, ThatClaimToBeHugeAreRefusedUndecoded) {
                            chunk({"IHDR\0\0\xff\xff\0\0\xff\xff\x08\0\0\0\0", 17}) + chunk("IDAT") +
                            chunk("IEND");
   folder.write("0.png", file);
-  EXPECT_THAT(refusal(options_for(folder.path())), HasSubstr("MAX_IMAGE_PIXELS"));
+  EXPECT_THAT(refusal(options_for(folder / "0.png")), HasSubstr("has 65535 x 65535 pixels"));
+  folder.write("1.pgm", "P5 65535 65535 255\n");
+  EXPECT_THAT(refusal(options_for(folder / "1.pgm")), HasSubstr("MAX_IMAGE_PIXELS"));
 }
 
 TEST(ReplayVideo, PlaysEveryFrameAtItsOwnRate) {
