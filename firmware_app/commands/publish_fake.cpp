@@ -8,7 +8,7 @@
 #include "commands/commands.h"
 #include "daemon_options.h"
 #include "publish/encoder.h"
-#include "service/bus_worker.h"
+#include "service/buses.h"
 #include "service/make_publishers.h"
 #include "service/telemetry.h"
 #include "simulate/fake_wood.h"
@@ -26,13 +26,11 @@ struct Options {
 class FakeDaemon {
  public:
   FakeDaemon(const DaemonConfig& config, std::uint64_t seed)
-      : wood_(seed), telemetry_(BOLE_VERSION, config.camera.name) {
+      : wood_(seed),
+        telemetry_(BOLE_VERSION, config.camera.name),
+        buses_(make_publishers(config, "{}"), WhenFull::overwrite, [] {}) {
     list_.source = ListSource::fake;
     list_.camera = config.camera.name;
-    for (auto& publisher : make_publishers(config, "{}")) {
-      buses_.push_back(
-          std::make_unique<BusWorker>(std::move(publisher), WhenFull::overwrite, [] {}));
-    }
     telemetry_.capture_event({CameraState::streaming, "fake", false});
   }
 
@@ -42,10 +40,7 @@ class FakeDaemon {
     list_.capture_mono_ns = clock_.mono_ns();
     list_.trees = wood_.trees(seconds);
     list_.publish_mono_ns = clock_.mono_ns();
-    const auto bytes = encoder_.encode(list_);
-    for (const auto& bus : buses_) {
-      bus->offer(MessageKind::trees, bytes, "", list_.publish_mono_ns);
-    }
+    buses_.offer(MessageKind::trees, encoder_.encode(list_), "", list_.publish_mono_ns);
     telemetry_.processed(list_.publish_mono_ns - list_.capture_mono_ns, 0);
     CaptureCounts counts;
     counts.frames = seq + 1;
@@ -56,11 +51,9 @@ class FakeDaemon {
     status_t status = telemetry_.status(clock_.mono_ns(), false);
     status.utime = clock_.utc_us();
     status.mono_ns = clock_.mono_ns();
-    for (const auto& bus : buses_) status.buses.push_back(bus->health());
+    status.buses = buses_.health();
     encode_status(std::move(status), status_bytes_);
-    for (const auto& bus : buses_) {
-      bus->offer(MessageKind::status, status_bytes_, "", clock_.mono_ns());
-    }
+    buses_.offer(MessageKind::status, status_bytes_, "", clock_.mono_ns());
   }
 
  private:
@@ -70,7 +63,7 @@ class FakeDaemon {
   TreeListEncoder encoder_;
   TreeList list_;
   std::vector<std::byte> status_bytes_;
-  std::vector<std::unique_ptr<BusWorker>> buses_;
+  Buses buses_;
 };
 
 // True when it was told to stop before `deadline_ns`.

@@ -23,11 +23,13 @@ float us(std::int64_t ns) { return static_cast<float>(ns) / 1000; }
 }  // namespace
 
 BusWorker::BusWorker(std::unique_ptr<Publisher> publisher, WhenFull when_full,
-                     std::function<void()> on_finished, Trace* trace)
+                     std::shared_ptr<Doorbell> bell, std::function<void()> on_finished,
+                     Trace* trace)
     : publisher_(std::move(publisher)),
       when_full_(when_full),
       on_finished_(std::move(on_finished)),
-      trace_(trace) {
+      trace_(trace),
+      mailbox_(std::move(bell)) {
   health_.name = publisher_->name();
   health_.healthy = 1;
   for (Message& message : outgoing_) message.bytes.reserve(kDatagramBytes);
@@ -47,7 +49,7 @@ void BusWorker::offer(MessageKind kind, std::span<const std::byte> bytes, std::s
   message.processed_ns = processed_ns;
   message.seq = seq;
   const WhenFull when_full = kind == MessageKind::trees ? when_full_ : WhenFull::overwrite;
-  if (mailbox_.put(message, when_full, slot_of(kind)) && kind == MessageKind::trees) {
+  if (mailbox_.lay(message, when_full, slot_of(kind)) && kind == MessageKind::trees) {
     const std::lock_guard lock(mutex_);
     ++health_.overwritten;
   }

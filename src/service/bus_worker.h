@@ -24,16 +24,19 @@ namespace bole {
 /// then counted.
 class BusWorker {
  public:
-  /// `when_full` holds for lists; a status is always overwritten by the next. `on_finished` is
-  /// called from the bus's thread when it ends. `trace` may be null.
+  /// `when_full` holds for lists; a status is always overwritten by the next. `bell` wakes the
+  /// thread, and those of the other buses with it. `on_finished` is called from the bus's thread
+  /// when it ends. `trace` may be null.
   BusWorker(std::unique_ptr<Publisher> publisher, WhenFull when_full,
-            std::function<void()> on_finished, Trace* trace = nullptr);
+            std::shared_ptr<Doorbell> bell, std::function<void()> on_finished,
+            Trace* trace = nullptr);
   ~BusWorker();
   BusWorker(const BusWorker&) = delete;
   BusWorker& operator=(const BusWorker&) = delete;
 
-  /// Leaves a message for the bus. `processed_ns`: CLOCK_MONOTONIC at the end of processing, from
-  /// which the hand-over is timed; `seq`: of a list, for the trace. Called by one thread a kind.
+  /// Leaves a message for the bus, which takes it when the bell is rung. `processed_ns`:
+  /// CLOCK_MONOTONIC at the end of processing, from which the hand-over is timed; `seq`: of a list,
+  /// for the trace. Called by one thread a kind.
   void offer(MessageKind kind, std::span<const std::byte> bytes, std::string_view file,
              std::int64_t processed_ns, std::int64_t seq = 0);
 
@@ -42,8 +45,6 @@ class BusWorker {
   /// Makes a publish() that waits give up.
   void interrupt() noexcept { publisher_->interrupt(); }
   bool finished() const;
-  /// Of its thread.
-  std::thread::native_handle_type native_handle() { return thread_.native_handle(); }
 
   bus_t health() const;
 

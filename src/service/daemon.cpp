@@ -1,5 +1,6 @@
 #include "service/daemon.h"
 
+#include <sched.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 
@@ -31,6 +32,15 @@ WarpTable open_table(const DaemonConfig::CameraPart& part, const Camera& camera)
 void lock_memory() {
   if (::mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
     spdlog::warn("service.lock_memory: {}; grant CAP_IPC_LOCK or raise LimitMEMLOCK",
+                 std::strerror(errno));
+  }
+}
+
+// Of this thread and of all that it starts, those within zenoh and libcamera included.
+void set_realtime_priority(int priority) {
+  const sched_param parameters{priority};
+  if (::sched_setscheduler(0, SCHED_FIFO, &parameters) != 0) {
+    spdlog::warn("service.realtime_priority: {}; grant CAP_SYS_NICE or raise LimitRTPRIO",
                  std::strerror(errno));
   }
 }
@@ -74,6 +84,7 @@ void run_daemon(const DaemonConfig& config, const std::string& version, int stop
   const Camera camera = load_camera(config.camera.file);
   SourceSetup setup = make_source(config, camera);
   const WarpTable table = open_table(config.camera, camera);
+  if (config.service.realtime_priority > 0) set_realtime_priority(config.service.realtime_priority);
   std::vector<std::unique_ptr<Publisher>> publishers =
       make_publishers(config, calibration_json(camera));
 
@@ -95,7 +106,7 @@ void run_daemon(const DaemonConfig& config, const std::string& version, int stop
   const SystemClock clock;
   const std::int64_t start_ns = clock.mono_ns();
   Pipeline pipeline(*setup.source, *setup.clock, processor, telemetry, std::move(publishers),
-                    setup.lockstep, config.service.realtime_priority, trace ? &*trace : nullptr);
+                    setup.lockstep, trace ? &*trace : nullptr);
   pipeline.run(stop_fd);
   if (setup.kind == ListSource::replay) {
     log_summary(telemetry.summary(), pipeline.bus_health(),

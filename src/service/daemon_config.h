@@ -61,7 +61,7 @@ struct DaemonConfig {
   ZenohConfig zenoh;
 
   struct ServicePart {
-    int realtime_priority = 0;  ///< SCHED_FIFO of capture, processing, buses; 0: none
+    int realtime_priority = 0;  ///< SCHED_FIFO of all threads, processing one below; 0: none
     bool lock_memory = false;
     std::filesystem::path trace;  ///< where the time of frames goes, for Chrome; empty: no trace
   } service;

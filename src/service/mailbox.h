@@ -3,6 +3,7 @@
 #include <array>
 #include <condition_variable>
 #include <cstddef>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -15,48 +16,68 @@ enum class WhenFull {
   wait,       ///< nothing is lost: a replay in lockstep
 };
 
+/// What the takers of one or several mailboxes wait for. Threads that are woken one by one delay
+/// each other: the first one woken often takes the processor from the thread that was about to wake
+/// the next. A single ring() makes all of them runnable before any of them runs.
+struct Doorbell {
+  std::mutex mutex;  // guards the slots of the mailboxes that share it
+  std::condition_variable rung;
+
+  void ring() { rung.notify_all(); }
+};
+
 /// Hands values from one thread to another through `Slots` slots of one value each; the lower slot
 /// is taken first. Values are swapped in and out, so that what they own (capacity of a vector,
 /// buffer of a frame) goes round and nothing is allocated.
 template <typename T, std::size_t Slots = 1>
 class Mailbox {
  public:
-  /// Swaps `value` into the slot. True when that overwrote a value which nobody took; `value` holds
-  /// it then, for the caller to drop outside of the lock. Does nothing once closed.
-  bool put(T& value, WhenFull when_full, std::size_t slot = 0) {
-    std::unique_lock lock(mutex_);
+  /// Mailboxes with the same `bell` share the calls that wake their takers.
+  explicit Mailbox(std::shared_ptr<Doorbell> bell = std::make_shared<Doorbell>())
+      : bell_(std::move(bell)) {}
+
+  /// Swaps `value` into the slot; its taker wakes when the bell is rung. True when that overwrote a
+  /// value which nobody took; `value` holds it then, for the caller to drop outside of the lock.
+  /// Does nothing once closed.
+  bool lay(T& value, WhenFull when_full, std::size_t slot = 0) {
+    std::unique_lock lock(bell_->mutex);
     if (when_full == WhenFull::wait) {
-      changed_.wait(lock, [&] { return closed_ || !slots_.at(slot).full; });
+      emptied_.wait(lock, [&] { return closed_ || !slots_.at(slot).full; });
     }
     if (closed_) return false;
     std::swap(slots_.at(slot).value, value);
-    const bool overwritten = std::exchange(slots_.at(slot).full, true);
-    lock.unlock();
-    changed_.notify_all();
+    return std::exchange(slots_.at(slot).full, true);
+  }
+
+  /// lay(), and rings.
+  bool put(T& value, WhenFull when_full, std::size_t slot = 0) {
+    const bool overwritten = lay(value, when_full, slot);
+    bell_->ring();
     return overwritten;
   }
 
   /// Waits for a value, swaps it into `value` and returns its slot; nullopt once the mailbox is
   /// closed and empty.
   std::optional<std::size_t> take(T& value) {
-    std::unique_lock lock(mutex_);
+    std::unique_lock lock(bell_->mutex);
     std::optional<std::size_t> slot;
-    changed_.wait(lock, [&] { return (slot = first_full()) || closed_; });
+    bell_->rung.wait(lock, [&] { return (slot = first_full()) || closed_; });
     if (!slot) return std::nullopt;
     std::swap(slots_.at(*slot).value, value);
     slots_.at(*slot).full = false;
     lock.unlock();
-    changed_.notify_all();
+    emptied_.notify_all();
     return slot;
   }
 
   /// Nothing more is put; what is there can still be taken. Whoever waits in put() returns.
   void close() {
     {
-      const std::lock_guard lock(mutex_);
+      const std::lock_guard lock(bell_->mutex);
       closed_ = true;
     }
-    changed_.notify_all();
+    bell_->ring();
+    emptied_.notify_all();
   }
 
  private:
@@ -72,8 +93,8 @@ class Mailbox {
     return std::nullopt;
   }
 
-  std::mutex mutex_;
-  std::condition_variable changed_;
+  std::shared_ptr<Doorbell> bell_;
+  std::condition_variable emptied_;
   std::array<Slot, Slots> slots_;
   bool closed_ = false;
 };

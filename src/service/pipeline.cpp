@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <system_error>
 
 #include <spdlog/spdlog.h>
 
@@ -19,33 +18,37 @@ constexpr std::int64_t kBusPatienceNs = 500'000'000;  // for a bus to end when w
 
 std::int64_t now_ns() { return SystemClock().mono_ns(); }
 
+// Processing is the only thread that works for long. Under SCHED_FIFO, where nothing but a higher
+// priority interrupts it, capture and the buses would wait for it.
+void let_others_first() {
+  int policy = SCHED_OTHER;
+  sched_param parameters{};
+  ::pthread_getschedparam(::pthread_self(), &policy, &parameters);
+  if (policy != SCHED_FIFO || parameters.sched_priority == 1) return;
+  --parameters.sched_priority;
+  ::pthread_setschedparam(::pthread_self(), policy, &parameters);
+}
+
 }  // namespace
 
 Pipeline::Pipeline(FrameSource& source, Clock& clock, Processor& processor, Telemetry& telemetry,
-                   std::vector<std::unique_ptr<Publisher>> publishers, bool lockstep,
-                   int realtime_priority, Trace* trace)
+                   std::vector<std::unique_ptr<Publisher>> publishers, bool lockstep, Trace* trace)
     : source_(source),
       clock_(clock),
       processor_(processor),
       telemetry_(telemetry),
       lockstep_(lockstep),
       when_full_(lockstep ? WhenFull::wait : WhenFull::overwrite),
-      realtime_priority_(realtime_priority),
       trace_(trace),
-      supervisor_(source, clock, [this](const CameraEvent& event) { on_camera(event); }) {
-  for (auto& publisher : publishers) {
-    buses_.push_back(std::make_unique<BusWorker>(
-        std::move(publisher), when_full_, [this] { attention_.raise(); }, trace));
-  }
-}
+      supervisor_(source, clock, [this](const CameraEvent& event) { on_camera(event); }),
+      buses_(
+          std::move(publishers), when_full_, [this] { attention_.raise(); }, trace) {}
 
 Pipeline::~Pipeline() {
   supervisor_.interrupt();
   frames_.close();
-  for (const auto& bus : buses_) {
-    bus->close();
-    bus->interrupt();
-  }
+  buses_.close();
+  buses_.interrupt();
   for (std::thread* thread : {&capture_thread_, &process_thread_}) {
     if (thread->joinable()) thread->join();
   }
@@ -89,6 +92,7 @@ void Pipeline::capture() {
 }
 
 void Pipeline::process() {
+  let_others_first();
   Captured captured;
   while (frames_.take(captured)) {
     try {
@@ -107,9 +111,7 @@ void Pipeline::process() {
 void Pipeline::process(const Captured& captured) {
   const Processor::Result result = processor_.process(captured.frame);
   const std::int64_t done_ns = result.steps_ns.back();
-  for (const auto& bus : buses_) {
-    bus->offer(MessageKind::trees, result.bytes, captured.frame.file(), done_ns, result.seq);
-  }
+  buses_.offer(MessageKind::trees, result.bytes, captured.frame.file(), done_ns, result.seq);
   // In lockstep the stamps are the replay's; what passes on the computer's own clock is told.
   const std::int64_t latency_ns =
       lockstep_ ? done_ns - captured.taken_ns : result.publish_mono_ns - result.captured.mono_ns;
@@ -138,47 +140,22 @@ void Pipeline::publish_status(bool stopping) {
   status_t status = telemetry_.status(at_ns, stopping);
   status.utime = clock_.utc_us();
   status.mono_ns = clock_.mono_ns();
-  status.buses = bus_health();
+  status.buses = buses_.health();
   encode_status(std::move(status), status_bytes_);
-  for (const auto& bus : buses_) bus->offer(MessageKind::status, status_bytes_, "", at_ns);
-}
-
-std::vector<bus_t> Pipeline::bus_health() const {
-  std::vector<bus_t> health;
-  for (const auto& bus : buses_) health.push_back(bus->health());
-  return health;
-}
-
-bool Pipeline::finished() const {
-  return processed_all_ &&
-         std::ranges::all_of(buses_, [](const auto& bus) { return bus->finished(); });
-}
-
-void Pipeline::make_realtime() {
-  std::vector<pthread_t> threads{capture_thread_.native_handle(), process_thread_.native_handle()};
-  for (const auto& bus : buses_) threads.push_back(bus->native_handle());
-  const sched_param parameters{realtime_priority_};
-  for (const pthread_t thread : threads) {
-    if (const int error = ::pthread_setschedparam(thread, SCHED_FIFO, &parameters); error != 0) {
-      spdlog::warn("service.realtime_priority: {}; grant CAP_SYS_NICE or raise LimitRTPRIO",
-                   std::generic_category().message(error));
-      return;
-    }
-  }
+  buses_.offer(MessageKind::status, status_bytes_, "", at_ns);
 }
 
 void Pipeline::run(int stop_fd) {
   capture_thread_ = std::thread([this] { capture(); });
   process_thread_ = std::thread([this] { process(); });
-  if (realtime_priority_ > 0) make_realtime();
   std::int64_t next_beat_ns = 0;
   std::int64_t give_up_ns = kNever;
   bool closing = false;
-  while (!finished() && now_ns() < give_up_ns) {
+  while (!(processed_all_ && buses_.finished()) && now_ns() < give_up_ns) {
     if (processed_all_ && !closing) {
       closing = true;
       publish_status(true);
-      for (const auto& bus : buses_) bus->close();
+      buses_.close();
     }
     if (!closing && (status_due_.exchange(false) || now_ns() >= next_beat_ns)) {
       publish_status(false);

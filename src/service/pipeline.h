@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/wakeup.h"
-#include "service/bus_worker.h"
+#include "service/buses.h"
 #include "service/processor.h"
 #include "service/service_manager.h"
 #include "service/telemetry.h"
@@ -20,11 +20,9 @@ namespace bole {
 class Pipeline {
  public:
   /// All but `publishers` must outlive the pipeline. `lockstep`: between capture, processing and
-  /// buses nothing is overwritten; the faster one waits. `realtime_priority`: of capture,
-  /// processing and the buses under SCHED_FIFO; 0: none. `trace` may be null.
+  /// buses nothing is overwritten; the faster one waits. `trace` may be null.
   Pipeline(FrameSource& source, Clock& clock, Processor& processor, Telemetry& telemetry,
-           std::vector<std::unique_ptr<Publisher>> publishers, bool lockstep, int realtime_priority,
-           Trace* trace);
+           std::vector<std::unique_ptr<Publisher>> publishers, bool lockstep, Trace* trace);
   ~Pipeline();
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
@@ -33,7 +31,7 @@ class Pipeline {
   /// readable.
   void run(int stop_fd);
 
-  std::vector<bus_t> bus_health() const;
+  std::vector<bus_t> bus_health() const { return buses_.health(); }
 
  private:
   struct Captured {
@@ -47,8 +45,6 @@ class Pipeline {
   void trace(const Captured& captured, const Processor::Result& result);
   void on_camera(const CameraEvent& event);
   void publish_status(bool stopping);
-  void make_realtime();
-  bool finished() const;
   // Until then, or until something needs attention; true when `stop_fd` (-1: none) is readable.
   bool wait(int stop_fd, std::int64_t until_ns);
 
@@ -58,7 +54,6 @@ class Pipeline {
   Telemetry& telemetry_;
   const bool lockstep_;
   const WhenFull when_full_;
-  const int realtime_priority_;
   Trace* const trace_;
   ServiceManager service_manager_;
   std::vector<std::string> refused_;  // what was last told of it
@@ -67,7 +62,7 @@ class Pipeline {
   std::atomic<bool> processed_all_{false};
   Supervisor supervisor_;
   Mailbox<Captured> frames_;
-  std::vector<std::unique_ptr<BusWorker>> buses_;
+  Buses buses_;
   std::vector<std::byte> status_bytes_;
   std::thread capture_thread_;
   std::thread process_thread_;

@@ -106,7 +106,7 @@ def hand_over(programs, raw_drive, log, types, lcm_url):
                "lcm,zenoh,jsonl:/dev/null", "--set", f"lcm.url={lcm_url}", "--set",
                f'zenoh.connect=["{endpoint}"]', "--set", "service.realtime_priority=10"),
     ):
-        time.sleep(6)
+        time.sleep(11)  # three lists above the 99th percentile
         buses = router.last_status(types).buses
     return [bus for bus in buses if bus.name != "jsonl"]
 

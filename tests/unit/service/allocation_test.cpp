@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "service/bus_worker.h"
+#include "service/buses.h"
 #include "service/processor.h"
 
 namespace {
@@ -53,7 +53,9 @@ TEST_P(Allocation, NoneAFrameAfterTheFirstHundred) {
   options.min_score = 0;
   options.camera = "sixteen-letters-";
   Processor processor(table, camera.config.mount.height, camera.config.search, options, clock);
-  BusWorker bus(std::make_unique<QuietBus>(), WhenFull::wait, [] {});
+  std::vector<std::unique_ptr<Publisher>> publishers;
+  publishers.push_back(std::make_unique<QuietBus>());
+  Buses buses(std::move(publishers), WhenFull::wait, [] {});
 
   const ImageSize size = camera.model->image_size();
   std::vector<std::byte> pixels(packed_frame_bytes(PixelFormat::yuyv, size));
@@ -70,7 +72,7 @@ TEST_P(Allocation, NoneAFrameAfterTheFirstHundred) {
       const Frame frame(*view_packed(PixelFormat::yuyv, size, pixels),
                         {StampClock::monotonic, k * 100'000'000LL, 0}, k, buffers, 0);
       const Processor::Result result = processor.process(frame);
-      bus.offer(MessageKind::trees, result.bytes, "frame_000001.jpg", clock.mono_ns());
+      buses.offer(MessageKind::trees, result.bytes, "frame_000001.jpg", clock.mono_ns());
     }
     counting = false;
   }

@@ -105,5 +105,24 @@ TEST(Mailbox, ClosingReleasesAProducerThatWaits) {
   producer.join();
 }
 
+TEST(Mailbox, OneRingWakesTheTakersOfAllMailboxesThatShareTheBell) {
+  const auto bell = std::make_shared<Doorbell>();
+  Mailbox<int> first(bell), second(bell);
+  std::vector<std::thread> takers;
+  for (Mailbox<int>* mailbox : {&first, &second}) {
+    takers.emplace_back([mailbox] {
+      int value = 0;
+      EXPECT_TRUE(mailbox->take(value).has_value());
+      EXPECT_EQ(value, 5);
+    });
+  }
+  for (Mailbox<int>* mailbox : {&first, &second}) {
+    int value = 5;
+    EXPECT_FALSE(mailbox->lay(value, WhenFull::overwrite));
+  }
+  bell->ring();
+  for (std::thread& taker : takers) taker.join();
+}
+
 }  // namespace
 }  // namespace bole

@@ -1,4 +1,4 @@
-#include "service/bus_worker.h"
+#include "service/buses.h"
 
 #include <condition_variable>
 
@@ -49,18 +49,21 @@ class ScriptedBus : public Publisher {
   BusScript& script_;
 };
 
-void offer(BusWorker& bus, std::size_t size, MessageKind kind = MessageKind::trees) {
-  bus.offer(kind, std::vector<std::byte>(size), "", SystemClock().mono_ns());
+void offer(Buses& buses, std::size_t size, MessageKind kind = MessageKind::trees) {
+  buses.offer(kind, std::vector<std::byte>(size), "", SystemClock().mono_ns());
 }
 
-std::unique_ptr<BusWorker> worker(BusScript& script, WhenFull when_full) {
-  return std::make_unique<BusWorker>(std::make_unique<ScriptedBus>(script), when_full, [] {});
+// One bus for each script.
+std::unique_ptr<Buses> buses_of(std::initializer_list<BusScript*> scripts, WhenFull when_full) {
+  std::vector<std::unique_ptr<Publisher>> publishers;
+  for (BusScript* script : scripts) publishers.push_back(std::make_unique<ScriptedBus>(*script));
+  return std::make_unique<Buses>(std::move(publishers), when_full, [] {});
 }
 
-TEST(BusWorker, ASlowBusGetsTheNewestListAndTheOthersAreCounted) {
+TEST(Buses, ASlowBusGetsTheNewestListAndTheOthersAreCounted) {
   BusScript script;
   script.hold(true);
-  const auto bus = worker(script, WhenFull::overwrite);
+  const auto bus = buses_of({&script}, WhenFull::overwrite);
   offer(*bus, 1);
   script.wait_for_messages(1);  // held in the bus; the slot is free
   for (std::size_t size = 2; size <= 5; ++size) offer(*bus, size);
@@ -69,24 +72,41 @@ TEST(BusWorker, ASlowBusGetsTheNewestListAndTheOthersAreCounted) {
   bus->close();
   while (!bus->finished()) std::this_thread::yield();
   EXPECT_EQ(script.sizes, (std::vector<std::size_t>{1, 5}));
-  EXPECT_EQ(bus->health().overwritten, 3);
-  EXPECT_EQ(bus->health().published, 2);
+  EXPECT_EQ(bus->health()[0].overwritten, 3);
+  EXPECT_EQ(bus->health()[0].published, 2);
 }
 
-TEST(BusWorker, InLockstepNothingIsLost) {
+TEST(Buses, ASlowBusDelaysNoOther) {
+  BusScript slow, quick;
+  slow.hold(true);
+  const auto buses = buses_of({&slow, &quick}, WhenFull::overwrite);
+  offer(*buses, 1);
+  slow.wait_for_messages(1);
+  for (std::size_t size = 2; size <= 5; ++size) {
+    offer(*buses, size);
+    quick.wait_for_messages(size);
+  }
+  slow.hold(false);
+  buses->close();
+  while (!buses->finished()) std::this_thread::yield();
+  EXPECT_EQ(slow.sizes, (std::vector<std::size_t>{1, 5}));
+  EXPECT_EQ(quick.sizes, (std::vector<std::size_t>{1, 2, 3, 4, 5}));
+}
+
+TEST(Buses, InLockstepNothingIsLost) {
   BusScript script;
-  const auto bus = worker(script, WhenFull::wait);
+  const auto bus = buses_of({&script}, WhenFull::wait);
   for (std::size_t size = 0; size < 500; ++size) offer(*bus, size);
   bus->close();
   while (!bus->finished()) std::this_thread::yield();
   EXPECT_EQ(script.sizes.size(), 500U);
-  EXPECT_EQ(bus->health().published, 500);
+  EXPECT_EQ(bus->health()[0].published, 500);
 }
 
-TEST(BusWorker, AStatusDoesNotTakeAListsPlace) {
+TEST(Buses, AStatusDoesNotTakeAListsPlace) {
   BusScript script;
   script.hold(true);
-  const auto bus = worker(script, WhenFull::overwrite);
+  const auto bus = buses_of({&script}, WhenFull::overwrite);
   offer(*bus, 1);
   script.wait_for_messages(1);
   offer(*bus, 2);
@@ -94,35 +114,35 @@ TEST(BusWorker, AStatusDoesNotTakeAListsPlace) {
   script.hold(false);
   script.wait_for_messages(3);
   EXPECT_EQ(script.sizes, (std::vector<std::size_t>{1, 3, 2}));
-  EXPECT_EQ(bus->health().overwritten, 0);
+  EXPECT_EQ(bus->health()[0].overwritten, 0);
 }
 
-TEST(BusWorker, ARefusalIsAStateAndACounterAndEndsWithTheNextSuccess) {
+TEST(Buses, ARefusalIsAStateAndACounterAndEndsWithTheNextSuccess) {
   BusScript script;
   script.refuse("no route");
-  const auto bus = worker(script, WhenFull::wait);
+  const auto bus = buses_of({&script}, WhenFull::wait);
   for (int k = 0; k < 3; ++k) offer(*bus, 1);
   script.wait_for_messages(3);
-  while (bus->health().failed < 3) std::this_thread::yield();
-  EXPECT_EQ(bus->health().healthy, 0);
-  EXPECT_EQ(bus->health().last_error, "no route");
+  while (bus->health()[0].failed < 3) std::this_thread::yield();
+  EXPECT_EQ(bus->health()[0].healthy, 0);
+  EXPECT_EQ(bus->health()[0].last_error, "no route");
   script.refuse("");
   offer(*bus, 1);
-  while (bus->health().published < 1) std::this_thread::yield();
-  EXPECT_EQ(bus->health().healthy, 1);
-  EXPECT_EQ(bus->health().failed, 3);
+  while (bus->health()[0].published < 1) std::this_thread::yield();
+  EXPECT_EQ(bus->health()[0].healthy, 1);
+  EXPECT_EQ(bus->health()[0].failed, 3);
 }
 
-TEST(BusWorker, HandOversAreBinnedByPowersOfTwoMicroseconds) {
+TEST(Buses, HandOversAreBinnedByPowersOfTwoMicroseconds) {
   BusScript script;
-  const auto bus = worker(script, WhenFull::wait);
+  const auto bus = buses_of({&script}, WhenFull::wait);
   bus->offer(MessageKind::trees, {}, "", SystemClock().mono_ns() - 1'000'000'000);
   bus->offer(MessageKind::trees, {}, "",
              SystemClock().mono_ns() + 1'000'000'000);  // a stepped clock
-  while (bus->health().published < 2) std::this_thread::yield();
-  EXPECT_EQ(bus->health().handover_histogram[bus_t::HANDOVER_BINS - 1], 1);
-  EXPECT_EQ(bus->health().handover_histogram[0], 1);
-  EXPECT_GE(bus->health().handover_max_us, 1e6F);
+  while (bus->health()[0].published < 2) std::this_thread::yield();
+  EXPECT_EQ(bus->health()[0].handover_histogram[bus_t::HANDOVER_BINS - 1], 1);
+  EXPECT_EQ(bus->health()[0].handover_histogram[0], 1);
+  EXPECT_GE(bus->health()[0].handover_max_us, 1e6F);
 }
 
 }  // namespace
