@@ -7,7 +7,9 @@
 namespace bole {
 
 /// The inner loops of FeatureReader's grid, in whole vectors of whatever this processor has, and
-/// the plain loops that say what they must give.
+/// the plain loops that say what they must give: equal results.
+inline constexpr int kGridHeights = 11;
+inline constexpr int kGridAcross = 12;
 inline constexpr int kGridLanes = 16;
 inline constexpr int kMostGridBands = 256;
 
@@ -24,15 +26,31 @@ struct CellColumns {
   float lean = 0;    ///< columns a band
   /// From the middle, columns; ascending. Cell i lies between the borders i and i + 1.
   alignas(64) std::array<float, kGridLanes> borders{};
+  /// What the sums in cell i are multiplied by; 0 from kGridAcross on.
+  alignas(64) std::array<float, kGridLanes> factors{};
 };
 
-/// sums[b][i] = 16 times the log brightness in cell i of the bands before b; within a column,
-/// brightness goes evenly, in parts of 1/16 rounded to the nearest.
-struct CellSums {
-  static constexpr int kParts = 16;
-  alignas(64) std::int32_t at[kMostGridBands + 1][kGridLanes];
+/// Where cells of one height begin and end: so many bands from the first one, and a share of the
+/// next.
+struct CellRows {
+  int from = 0, to = 0;  ///< below `bands`
+  float from_rest = 0, to_rest = 0;
+  float factor = 0;  ///< what the sums are multiplied by
 };
-void sum_cells(const CellColumns& cells, CellSums& sums);
-void sum_cells_plain(const CellColumns& cells, CellSums& sums);
+
+/// The mean of the values of all cells, and the standard deviation about it.
+struct GridStatistics {
+  float mean = 0, spread = 0;
+};
+
+/// values[h][i] = kCellParts times the sum of the log brightness in cell i over the rows h, times
+/// both factors. Brightness goes evenly within a band and within a column; in a column it is
+/// counted in parts of 1 / kCellParts, rounded to the nearest.
+inline constexpr int kCellParts = 16;
+using GridValues = std::array<std::array<float, kGridLanes>, kGridHeights>;
+GridStatistics read_cells(const CellColumns& columns,
+                          const std::array<CellRows, kGridHeights>& rows, GridValues& values);
+GridStatistics read_cells_plain(const CellColumns& columns,
+                                const std::array<CellRows, kGridHeights>& rows, GridValues& values);
 
 }  // namespace bole

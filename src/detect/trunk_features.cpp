@@ -34,7 +34,7 @@ FeatureReader::FeatureReader(const DetectorSetup& setup)
 }
 
 float FeatureReader::read_grid(const Bands& bands, const TrunkShape& shape, int first_band,
-                               float* out, float* mean) const {
+                               float* out) const {
   const float unit =
       std::clamp(0.3F * shape.width(), 3.0F, 14.0F * static_cast<float>(focal_) / kReference);
   const float top = static_cast<float>(first_band * Bands::kRows);
@@ -54,61 +54,43 @@ float FeatureReader::read_grid(const Bands& bands, const TrunkShape& shape, int 
   const float w = shape.width();
   const float row = (static_cast<float>(first) + 0.5F) * Bands::kRows - shape.foot;
   const bool narrow = 0.5F * w + 1 < static_cast<float>(Bands::kMostColumns);
-  CellColumns cells{.sums = bands.sum(first),
-                    .pitch = bands.pitch(),
-                    .coarse = narrow ? nullptr : bands.coarse(first),
-                    .coarse_pitch = bands.coarse_pitch(),
-                    .margin = bands.margin(),
-                    .bands = last - first,
-                    .middle = shape.centre() + shape.slope() * row,
-                    .lean = shape.slope() * Bands::kRows};
-  for (int i = 0; i < kGridLanes; ++i) cells.borders[i] = kBorders[std::min(i, F::kAcross)] * w;
-  CellSums sums;
-  sum_cells(cells, sums);
-
+  CellColumns columns{.sums = bands.sum(first),
+                      .pitch = bands.pitch(),
+                      .coarse = narrow ? nullptr : bands.coarse(first),
+                      .coarse_pitch = bands.coarse_pitch(),
+                      .margin = bands.margin(),
+                      .bands = last - first,
+                      .middle = shape.centre() + shape.slope() * row,
+                      .lean = shape.slope() * Bands::kRows};
+  for (int i = 0; i < kGridLanes; ++i) columns.borders[i] = kBorders[std::min(i, F::kAcross)] * w;
   const float sign = shape.dark ? 1.0F : -1.0F;
-  std::array<float, F::kAcross> per_cell;
-  for (int i = 0; i < F::kAcross; ++i) {
-    per_cell[i] =
-        sign / (float{Bands::kScale * CellSums::kParts} * (kBorders[i + 1] - kBorders[i]) * w);
-  }
-  // A place among the bands, from the first one's upper border.
-  struct Place {
-    int band;
-    float rest;
+  for (int i = 0; i < F::kAcross; ++i)
+    columns.factors[i] =
+        sign / (float{Bands::kScale * kCellParts} * (kBorders[i + 1] - kBorders[i]) * w);
+
+  std::array<CellRows, F::kHeights> rows;
+  const float bottom = static_cast<float>(last * Bands::kRows),
+              start = static_cast<float>(first * Bands::kRows);
+  const auto band_of = [&](float row_at) {
+    return std::clamp(row_at / Bands::kRows - static_cast<float>(first), 0.0F,
+                      static_cast<float>(last - first) - 1e-3F);
   };
-  const auto place = [&](float row_at) {
-    const float b = std::clamp(row_at / Bands::kRows - static_cast<float>(first), 0.0F,
-                               static_cast<float>(last - first) - 1e-3F);
-    const auto whole = static_cast<int>(b);
-    return Place{whole, b - static_cast<float>(whole)};
-  };
-  float total = 0, squares = 0;
   for (int h = 0; h < F::kHeights; ++h) {
-    const float bottom = static_cast<float>(last * Bands::kRows),
-                start = static_cast<float>(first * Bands::kRows);
     const float low = std::clamp(borders[h], start + 1, bottom);
     const float high = std::clamp(borders[h + 1], start, low - 1);
-    const Place from = place(high), to = place(low);
-    const auto *from_sums = sums.at[from.band], *to_sums = sums.at[to.band];
-    const float per_band = Bands::kRows / (low - high);
-    for (int i = 0; i < F::kAcross; ++i) {
-      const auto beyond = [i](const std::int32_t* at, float rest) {
-        return rest * static_cast<float>(at[kGridLanes + i] - at[i]);
-      };
-      const float sum = static_cast<float>(to_sums[i] - from_sums[i]) + beyond(to_sums, to.rest) -
-                        beyond(from_sums, from.rest);
-      const float value = sum * per_band * per_cell[i];
-      out[h * F::kAcross + i] = value;
-      total += value;
-      squares += value * value;
-    }
+    const float from = band_of(high), to = band_of(low);
+    CellRows& r = rows[h];
+    r.from = static_cast<int>(from);
+    r.to = static_cast<int>(to);
+    r.from_rest = from - static_cast<float>(r.from);
+    r.to_rest = to - static_cast<float>(r.to);
+    r.factor = Bands::kRows / (low - high);
   }
-  constexpr int kCells = F::kHeights * F::kAcross;
-  *mean = total / kCells;
-  const float spread = std::sqrt(std::max(0.0F, squares / kCells - *mean * *mean));
+  GridValues values;
+  const auto [mean, spread] = read_cells(columns, rows, values);
   const float scale = 1 / std::max(spread, kLeastSpread);
-  for (int i = 0; i < kCells; ++i) out[i] = (out[i] - *mean) * scale;
+  for (const auto& cells : values)
+    for (int i = 0; i < F::kAcross; ++i) *out++ = (cells[i] - mean) * scale;
   return spread;
 }
 
@@ -139,9 +121,9 @@ void FeatureReader::read_foot(const PanoramaView& panorama, const TrunkShape& sh
 
 void FeatureReader::read(const Bands& bands, const PanoramaView& panorama, const TrunkShape& shape,
                          const EdgeFit& fit, int first_band, F::Values& out) const {
-  float mean = 0;
+  static_assert(F::kHeights == kGridHeights && F::kAcross == kGridAcross);
   float* values = out.data();
-  const float spread = read_grid(bands, shape, first_band, values, &mean);
+  const float spread = read_grid(bands, shape, first_band, values);
   values += F::kHeights * F::kAcross;
   read_foot(panorama, shape, spread, values);
   values += F::kFootRows * F::kStrips;

@@ -33,8 +33,7 @@ class FeatureReader {
             const EdgeFit& fit, int first_band, TrunkFeatures::Values& out) const;
 
  private:
-  float read_grid(const Bands& bands, const TrunkShape& shape, int first_band, float* out,
-                  float* mean) const;
+  float read_grid(const Bands& bands, const TrunkShape& shape, int first_band, float* out) const;
   void read_foot(const PanoramaView& panorama, const TrunkShape& shape, float spread,
                  float* out) const;
 

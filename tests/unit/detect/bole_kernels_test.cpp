@@ -222,7 +222,7 @@ TEST_P(Kernels, RespondAlongEdgesAsThePlainLoops) {
   EXPECT_EQ(fast.agree_above, plain.agree_above);
 }
 
-TEST_P(Kernels, SumCellsAsThePlainLoops) {
+TEST_P(Kernels, ReadCellsAsThePlainLoops) {
   const RoughBands rough(2);
   constexpr int kCoarse = RoughBands::kPitch / Bands::kCoarse;
   std::vector<std::int32_t> coarse;
@@ -244,21 +244,28 @@ TEST_P(Kernels, SumCellsAsThePlainLoops) {
                       .bands = RoughBands::kCount,
                       .middle = 300.3F,
                       .lean = -0.07F,
-                      .borders = {}};
+                      .borders = {},
+                      .factors = {}};
     for (int i = 0; i < kGridLanes; ++i)
-      cells.borders[i] = width * static_cast<float>(std::min(i, 12) - 6);
+      cells.borders[i] = width * static_cast<float>(std::min(i, kGridAcross) - 6);
+    for (int i = 0; i < kGridAcross; ++i) cells.factors[i] = 0.001F * static_cast<float>(i + 1);
     return cells;
   };
-  const auto expect_equal = [](const CellSums& a, const CellSums& b) {
-    for (int band = 0; band <= RoughBands::kCount; ++band)
-      for (int i = 0; i < 12; ++i) ASSERT_EQ(a.at[band][i], b.at[band][i]) << band << " " << i;
+  std::array<CellRows, kGridHeights> rows;
+  for (int h = 0; h < kGridHeights; ++h)
+    rows[h] = {4 * h, 4 * h + h * h / 6, 0.05F * static_cast<float>(h), 0.7F, 0.3F};
+  const auto expect_equal = [](const GridValues& a, const GridValues& b) {
+    for (int h = 0; h < kGridHeights; ++h)
+      for (int i = 0; i < kGridAcross; ++i) ASSERT_EQ(a[h][i], b[h][i]) << h << " " << i;
   };
-  CellSums fast, plain, whole;
+  GridValues fast, plain, whole;
   for (const float width : {0.6F, 3.3F, 41.7F}) {
     for (const bool wide : {false, true}) {
-      sum_cells(columns(width, wide), fast);
-      sum_cells_plain(columns(width, wide), plain);
+      const GridStatistics of_fast = read_cells(columns(width, wide), rows, fast);
+      const GridStatistics of_plain = read_cells_plain(columns(width, wide), rows, plain);
       expect_equal(fast, plain);
+      EXPECT_EQ(of_fast.mean, of_plain.mean);
+      EXPECT_EQ(of_fast.spread, of_plain.spread);
       if (!wide) whole = fast;
     }
     expect_equal(fast, whole);  // narrow cells need no whole sums
