@@ -85,16 +85,21 @@ HWY_INLINE Values Joined(Values l, Values r, Values against) {
                  against);
 }
 
+// value * factor / 2^shift, rounded down; a product by a constant would become many additions.
+template <int kFactor, int kShift>
+HWY_INLINE Values Scaled(Values value) {
+  constexpr int kHigh = kFactor * (1 << (16 - kShift));
+  static_assert(kHigh == static_cast<std::int16_t>(kHigh));
+  return hn::MulHigh(value, hn::Set(Narrow(), static_cast<std::int16_t>(kHigh)));
+}
+
 // The same where the sign counts for less.
 HWY_INLINE Values JoinedAbove(Values l, Values r) {
   const Narrow d;
-  const auto soft = [&](Values v) {
-    return hn::Max(v, hn::ShiftRight<4>(hn::Mul(v, hn::Set(d, -11))));
-  };
+  const auto soft = [&](Values v) { return hn::Max(v, Scaled<-11, 5>(hn::Add(v, v))); };
   const auto any_sign = Joined(soft(l), soft(r), hn::Set(d, 35));
   const auto right_sign = Joined(l, r, hn::Set(d, 24));
-  return hn::Max(hn::ShiftRight<5>(hn::Mul(any_sign, hn::Set(d, 13))),
-                 hn::ShiftRight<3>(hn::Mul(right_sign, hn::Set(d, 5))));
+  return hn::Max(Scaled<13, 5>(any_sign), Scaled<5, 4>(hn::Add(right_sign, right_sign)));
 }
 
 void SumColumns(const ColumnSums& s) {
