@@ -19,10 +19,11 @@ Bands::Bands(const DetectorSetup& setup, int margin)
       sums_(static_cast<std::size_t>(count_) * pitch_),
       coarse_(static_cast<std::size_t>(count_) * coarse_pitch_),
       seen_(static_cast<std::size_t>(count_) * pitch_) {
-  for (int sum = 0; sum < static_cast<int>(log_.size()); ++sum) {
-    log_[sum] = static_cast<std::uint16_t>(
-        std::lround(kScale * std::log(static_cast<double>(sum) / kRows + kBlackLevel)));
-  }
+  const auto log = [](int sum) {
+    return std::lround(kScale * std::log(static_cast<double>(sum) / kRows + kBlackLevel));
+  };
+  for (int sum = 0; sum < static_cast<int>(log_.size()); ++sum)
+    log_[sum] = static_cast<std::uint16_t>(log(sum) - log(0));
 
   for (int band = 0; band < count_; ++band) {
     std::uint8_t* seen = seen_.data() + static_cast<std::size_t>(band) * pitch_;

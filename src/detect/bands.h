@@ -7,7 +7,7 @@
 
 namespace bole {
 
-/// The logarithm of a panorama's brightness in bands of four rows, with running sums along each
+/// The logarithm of a panorama's brightness, above black, in bands of four rows, with running sums along each
 /// band: what all templates and features read. In the logarithm a contrast does not depend on how
 /// much light falls on it.
 ///
@@ -23,7 +23,7 @@ class Bands {
   static constexpr int kScale = 256;  ///< units of log brightness in 1
   static constexpr int kBlackLevel =
       8;  ///< grey levels added before the logarithm: noise counts less
-  static constexpr int kMostColumns = 45;
+  static constexpr int kMostColumns = 73;
   static constexpr int kMostFlank = 36;
   static constexpr int kCoarse = 32;  ///< columns between the whole sums
 
