@@ -16,6 +16,12 @@ constexpr double kNarrowest = 4;  // columns
 constexpr int kWidestFlank = 28;  // columns
 constexpr double kSlope = 0.30;   // rising ground shifts feet by up to this tangent
 
+// To the nearest whole number; columns stay far from the limits.
+int rounded(double x) { return static_cast<int>(x + 16384.5) - 16384; }
+
+// How near the centres of twins are at most, by the width of the narrower one.
+float near_twin(float width) { return std::max(1.5F, 0.15F * width); }
+
 int widest_template(const DetectorSetup& setup) {
   const double widest =
       std::min(1.3, angular_width(setup.search.diameter.high * 1.1, setup.search.range.low * 0.95));
@@ -156,7 +162,7 @@ void Templates::pad(std::int16_t* evidence, int count) const {
 bool Templates::beaten_by(int size_index, int polarity, double centre, int evidence) const {
   const Size& size = sizes_[size_index];
   const int step = flanks_[size.flank].step;
-  const int place = static_cast<int>(std::lround((centre - size.width * 0.5) / step));
+  const int place = rounded((centre - size.width * 0.5) / step);
   const std::int16_t* at = peaks_[polarity][size_index].evidence.data() + pad_ + place;
   return std::max({at[-1], at[0], at[1]}) > evidence;
 }
@@ -195,11 +201,13 @@ void Templates::thin_out() {
   for (auto end = found_.end(); end != found_.begin() && kept_.size() < most_; --end) {
     std::pop_heap(found_.begin(), end, comes_later);
     const Candidate& c = *(end - 1);
+    const float centre = c.left + 0.5F * c.width, near = near_twin(c.width);
     const bool twin = std::any_of(kept_.begin(), kept_.end(), [&](const Candidate& k) {
-      const float tolerance = std::max(1.5F, 0.15F * std::min(c.width, k.width));
-      float shift = std::abs(c.left + 0.5F * c.width - k.left - 0.5F * k.width);
+      float shift = std::abs(centre - k.left - 0.5F * k.width);
       if (wraps_) shift = std::min(shift, static_cast<float>(columns_) - shift);
-      return c.dark == k.dark && shift < tolerance && std::abs(c.width - k.width) < 2 * tolerance &&
+      if (shift >= near || c.dark != k.dark) return false;
+      const float tolerance = std::min(near, near_twin(k.width));
+      return shift < tolerance && std::abs(c.width - k.width) < 2 * tolerance &&
              std::abs(c.foot - k.foot) < std::max(8.0F, 0.35F * c.width);
     });
     if (!twin) kept_.push_back(c);
