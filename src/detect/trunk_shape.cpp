@@ -38,6 +38,20 @@ EdgeLine search(const EdgeBands& bands, int foot, float column, int reach, int s
           kSlopeStep * static_cast<float>(found.slope - kUpright)};
 }
 
+// Moves a line by least squares, from the sums of places about it; false where they do not tell.
+bool improve(const LineSums& s, float searched_slope, EdgeLine& line) {
+  if (s.w <= 0) return false;
+  // A weak pull towards the searched slope keeps short trunks from tilting.
+  const double w = s.w, pull = w * 40;
+  const double det = w * (s.row_row + pull) - double{s.row} * s.row;
+  if (det <= 0) return false;
+  const double turn =
+      (w * (s.row_error + pull * (searched_slope - line.slope)) - double{s.row} * s.error) / det;
+  line.column += static_cast<float>((s.error - turn * s.row) / w);
+  line.slope += static_cast<float>(turn);
+  return true;
+}
+
 float row_of(int band) { return (static_cast<float>(band) + 0.5F) * Bands::kRows; }
 
 }  // namespace
@@ -87,29 +101,33 @@ EdgeBands EdgeFitter::along(const Bands& bands, Extent extent, float foot, int f
           .flank = flank};
 }
 
-// Straight line by least squares; places far off it count less and less.
-float EdgeFitter::place(const EdgeBands& bands, EdgeLine& line, int sign) const {
-  EdgePlaces places;
+// Both edges, step by step side by side: neither has to wait for the other's divisions.
+std::array<float, 2> EdgeFitter::place(const EdgeBands& bands, std::array<EdgeLine, 2>& lines,
+                                       int sign) const {
   const int least = nearest(0.15F * kContrast * static_cast<float>(bands.flank));
-  place_edge(bands, line, sign, least, kStrongContrast, places);
-  if (places.found < 4) return 3;
-  EdgeLine fitted = line;
-  float scatter = 1;
+  std::array<EdgePlaces, 2> places;
+  for (const int e : {0, 1})
+    place_edge(bands, lines[e], e == 0 ? -sign : sign, least, kStrongContrast, places[e]);
+  std::array<EdgeLine, 2> fitted = lines;
+  std::array<float, 2> scatter = {1, 1};
+  std::array<bool, 2> fits = {places[0].found >= 4, places[1].found >= 4};
   for (int round = 0; round < 3; ++round) {
-    const float limit = round == 0 ? 2.0F : std::max(0.4F, 1.5F * scatter);
-    const LineSums s = sum_places(places, fitted, 2.5F * limit);
-    if (s.w <= 0) break;
-    // A weak pull towards the searched slope keeps short trunks from tilting.
-    const double w = s.w, pull = w * 40;
-    const double det = w * (s.row_row + pull) - double{s.row} * s.row;
-    if (det <= 0) break;
-    const double turn =
-        (w * (s.row_error + pull * (line.slope - fitted.slope)) - double{s.row} * s.error) / det;
-    fitted.column += static_cast<float>((s.error - turn * s.row) / w);
-    fitted.slope += static_cast<float>(turn);
-    scatter = std::sqrt(s.error_error / s.w);
+    for (const int e : {0, 1}) {
+      if (!fits[e]) continue;
+      const float limit = round == 0 ? 2.0F : std::max(0.4F, 1.5F * scatter[e]);
+      const LineSums sums = sum_places(places[e], fitted[e], 2.5F * limit);
+      fits[e] = improve(sums, lines[e].slope, fitted[e]);
+      if (fits[e]) scatter[e] = std::sqrt(sums.error_error / sums.w);
+    }
   }
-  if (std::abs(fitted.slope) < 0.12F && std::abs(fitted.column - line.column) < 6) line = fitted;
+  for (const int e : {0, 1}) {
+    if (places[e].found < 4) {
+      scatter[e] = 3;
+    } else if (std::abs(fitted[e].slope) < 0.12F &&
+               std::abs(fitted[e].column - lines[e].column) < 6) {
+      lines[e] = fitted[e];
+    }
+  }
   return scatter;
 }
 
@@ -211,9 +229,12 @@ void EdgeFitter::refine(const Bands& bands, TrunkShape& shape, EdgeFit& fit) con
   const EdgeBands edges =
       along(bands, straight, shape.foot, std::clamp(static_cast<int>(0.2F * shape.width()), 2, 5));
   const int sign = shape.dark ? 1 : -1;
-  EdgeLine left{shape.left, shape.left_slope}, right{shape.right, shape.right_slope};
-  fit.scatter_left = place(edges, left, -sign);
-  fit.scatter_right = place(edges, right, sign);
+  std::array<EdgeLine, 2> lines = {
+      {{shape.left, shape.left_slope}, {shape.right, shape.right_slope}}};
+  const std::array<float, 2> scatter = place(edges, lines, sign);
+  fit.scatter_left = scatter[0];
+  fit.scatter_right = scatter[1];
+  const auto& [left, right] = lines;
   if (right.column - left.column > 2.5F) {
     shape.left = left.column;
     shape.left_slope = left.slope;

@@ -65,8 +65,10 @@ class EdgeFitter {
   // What of a trunk is straight: from the upper border to above the root flare.
   Extent extent(const Bands& bands, float left, float width, float foot) const;
   EdgeBands along(const Bands& bands, Extent extent, float foot, int flank) const;
-  // Moves the line onto its edge; how far the edge's places scatter about it, columns.
-  float place(const EdgeBands& bands, EdgeLine& line, int sign) const;
+  // Moves the lines, left and right, onto their edges; how far the edges' places scatter about
+  // them, columns.
+  std::array<float, 2> place(const EdgeBands& bands, std::array<EdgeLine, 2>& lines,
+                             int sign) const;
   void judge(const EdgeBands& bands, const TrunkShape& shape, EdgeFit& fit) const;
 
   int width_, horizon_band_;
