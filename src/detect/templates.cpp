@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "detect/template_kernels.h"
 #include "geometry/ground.h"
@@ -92,6 +93,7 @@ Templates::Templates(const DetectorSetup& setup, const Bands& bands, int most_ca
   places_.resize(width_);
   found_.reserve(20000);
   kept_.reserve(most_);
+  earlier_in_part_.reserve(most_);
 }
 
 void Templates::add_flank(const Bands& bands, int width) {
@@ -188,6 +190,27 @@ void Templates::collect(int size_index, int polarity) {
   }
 }
 
+// Which part of the turn a column lies in; parts beyond a turn are the first ones again.
+int Templates::part_of(float column) const {
+  return rounded(column * kParts / static_cast<float>(columns_));
+}
+
+// Whether a candidate that is kept is nearly the same.
+bool Templates::has_twin(const Candidate& c) const {
+  const float centre = c.left + 0.5F * c.width, near = near_twin(c.width);
+  const auto is_twin = [&](const Candidate& k) {
+    const float tolerance = std::min(near, near_twin(k.width));
+    float shift = std::abs(centre - k.left - 0.5F * k.width);
+    if (wraps_) shift = std::min(shift, static_cast<float>(columns_) - shift);
+    return c.dark == k.dark && shift < tolerance && std::abs(c.width - k.width) < 2 * tolerance &&
+           std::abs(c.foot - k.foot) < std::max(8.0F, 0.35F * c.width);
+  };
+  for (int part = part_of(centre - near); part <= part_of(centre + near); ++part)
+    for (int k = latest_in_part_[(part + kParts) % kParts]; k >= 0; k = earlier_in_part_[k])
+      if (is_twin(kept_[k])) return true;
+  return false;
+}
+
 // Keeps the most evident; of near twins only the better.
 void Templates::thin_out() {
   // Few of them are wanted: a heap gives them in order without sorting the rest.
@@ -198,19 +221,15 @@ void Templates::thin_out() {
   };
   std::make_heap(found_.begin(), found_.end(), comes_later);
   kept_.clear();
+  earlier_in_part_.clear();
+  latest_in_part_.fill(-1);
   for (auto end = found_.end(); end != found_.begin() && kept_.size() < most_; --end) {
     std::pop_heap(found_.begin(), end, comes_later);
     const Candidate& c = *(end - 1);
-    const float centre = c.left + 0.5F * c.width, near = near_twin(c.width);
-    const bool twin = std::any_of(kept_.begin(), kept_.end(), [&](const Candidate& k) {
-      float shift = std::abs(centre - k.left - 0.5F * k.width);
-      if (wraps_) shift = std::min(shift, static_cast<float>(columns_) - shift);
-      if (shift >= near || c.dark != k.dark) return false;
-      const float tolerance = std::min(near, near_twin(k.width));
-      return shift < tolerance && std::abs(c.width - k.width) < 2 * tolerance &&
-             std::abs(c.foot - k.foot) < std::max(8.0F, 0.35F * c.width);
-    });
-    if (!twin) kept_.push_back(c);
+    if (has_twin(c)) continue;
+    int& latest = latest_in_part_[part_of(c.left + 0.5F * c.width) % kParts];
+    earlier_in_part_.push_back(std::exchange(latest, static_cast<int>(kept_.size())));
+    kept_.push_back(c);
   }
 }
 

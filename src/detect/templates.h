@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -65,6 +66,8 @@ class Templates {
   void pad(std::int16_t* evidence, int count) const;
   void collect(int size_index, int polarity);
   bool beaten_by(int size_index, int polarity, double centre, int evidence) const;
+  int part_of(float column) const;
+  bool has_twin(const Candidate& candidate) const;
   void thin_out();
 
   int columns_, width_, bands_, horizon_band_, widest_, pad_;
@@ -78,6 +81,10 @@ class Templates {
   std::vector<Peaks> peaks_[2];          // dark, bright
   std::vector<int> places_;
   std::vector<Candidate> found_, kept_;
+  // Kept candidates by the part of the turn that their centre lies in: a list for each.
+  static constexpr int kParts = 64;
+  std::array<int, kParts> latest_in_part_;
+  std::vector<int> earlier_in_part_;
 };
 
 }  // namespace bole
