@@ -1,5 +1,6 @@
 """Frames with truth that the figures are read on, and what bolectl eval makes of them. Used by
-scripts/held_out, scripts/robustness, scripts/photographs and scripts/degraded."""
+scripts/calibration, scripts/degraded, scripts/held_out, scripts/photographs, scripts/robustness and
+scripts/tracking."""
 import json
 import os
 import pathlib
@@ -61,6 +62,15 @@ def held_out(folder, seed, preset, frames):
             truth = frame_truth | {"frames": []}
         truth["frames"].append(frame)
     (target / "truth.json").write_text(json.dumps(truth))
+    return target
+
+
+def drive(folder, seed, frames, *options):
+    """A drive through the invented camera of `seed`, rendered when it is not there."""
+    target = folder / "_".join(["drive", str(seed), str(frames), *options[1:]])
+    if not (target / "truth.json").exists():
+        run(BOLECTL, "sim", "--out", target, "--frames", frames, "--seed", seed, "--camera",
+            "invented", *options)
     return target
 
 

@@ -67,10 +67,11 @@ void add_sighting(NormalEquations& equations, const Sighting& sighting, const Eg
 }
 
 void add_prior(NormalEquations& equations, const MotionEstimate& prior, const EgoMotion& motion) {
-  const double shift = 1 / (prior.shift_sigma * prior.shift_sigma);
+  const double forward = 1 / (prior.forward_sigma * prior.forward_sigma);
+  const double left = 1 / (prior.left_sigma * prior.left_sigma);
   const double turn = 1 / (prior.turn_sigma * prior.turn_sigma);
-  equations.add({1, 0, 0}, prior.mean.forward - motion.forward, shift);
-  equations.add({0, 1, 0}, prior.mean.left - motion.left, shift);
+  equations.add({1, 0, 0}, prior.mean.forward - motion.forward, forward);
+  equations.add({0, 1, 0}, prior.mean.left - motion.left, left);
   equations.add({0, 0, 1}, prior.mean.turn - motion.turn, turn);
 }
 
@@ -92,7 +93,8 @@ MotionEstimate estimate_motion(std::span<const Sighting> sightings, const Motion
     const Vec3 change = equations.solution();
     const Vec3 variances = equations.variances();
     motion = {motion.forward + change.x, motion.left + change.y, motion.turn + change.z};
-    estimate.shift_sigma = std::sqrt(std::max(variances.x, variances.y));
+    estimate.forward_sigma = std::sqrt(variances.x);
+    estimate.left_sigma = std::sqrt(variances.y);
     estimate.turn_sigma = std::sqrt(variances.z);
     if (norm(change) < 1e-6) break;
   }

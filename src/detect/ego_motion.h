@@ -32,8 +32,9 @@ struct Sighting {
 /// A motion with standard deviations.
 struct MotionEstimate {
   EgoMotion mean;
-  double shift_sigma = 0.1;  ///< metres
-  double turn_sigma = 0.1;   ///< radians
+  double forward_sigma = 0.1;  ///< metres
+  double left_sigma = 0.1;     ///< metres
+  double turn_sigma = 0.1;     ///< radians
 };
 
 /// The motion that explains the sightings and the prior best: Gauss-Newton over bearings and

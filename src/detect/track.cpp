@@ -12,10 +12,10 @@ namespace {
 
 // Standard deviations of the range's lasting and its fleeting error, in the detector's sigmas, and
 // how long the lasting one lasts.
-constexpr double kLasting = 0.75, kFleeting = 0.5;
+constexpr double kLasting = 0.75, kFleeting = 0.7;
 constexpr double kLastingSeconds = 3.0;
 // Bearings and widths err alike in frames that follow each other: so many sightings count for one.
-constexpr double kAlike = 8.0;
+constexpr double kAlikeBearings = 8.0, kAlikeWidths = 3.0;
 constexpr double kOutlier = 4.0;  // squared misfit, in variances, that halves a sighting's weight
 
 double squared(double x) { return x * x; }
@@ -97,13 +97,13 @@ void Track::observe(const Vec3& gradient, double residual, double variance) {
 
 void Track::see(Tree& tree) {
   const double turn = wrap_angle(tree.bearing - std::atan2(state_.y, state_.x));
-  observe(bearing_gradient(), turn, kAlike * bearing_variance(tree));
+  observe(bearing_gradient(), turn, kAlikeBearings * bearing_variance(tree));
   observe(range_gradient(tree), tree.range - range() - range_sigma(tree) * state_.z,
           squared(kFleeting * range_sigma(tree)));
 
   const double seen = 2 * range() * std::sin(tree.angular_width / 2);
   const double misfit = squared(seen - diameter_) / (diameter_variance_ + width_variance(tree));
-  const double variance = kAlike * width_variance(tree) * (1 + misfit / kOutlier);
+  const double variance = kAlikeWidths * width_variance(tree) * (1 + misfit / kOutlier);
   const double gain = diameter_variance_ / (diameter_variance_ + variance);
   diameter_ += gain * (seen - diameter_);
   diameter_variance_ = (1 - gain) * diameter_variance_ + squared(0.001);

@@ -6,9 +6,9 @@
 namespace bole {
 namespace {
 
-constexpr double kMemory = 3.3;  // seconds in which a sighting's weight falls to 1 / e
-constexpr double kDoubt = 0.5;   // sightings
-constexpr double kShift = 0.5, kNow = 0.8, kBefore = 0.6;
+constexpr double kMemory = 8;    // seconds in which a sighting's weight falls to 1 / e
+constexpr double kDoubt = 0.25;  // sightings
+constexpr double kShift = 0.52, kNow = 0.68, kBefore = 0.51;
 
 double log_odds(double probability) {
   constexpr double kCertain = 1e-4;

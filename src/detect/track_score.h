@@ -9,7 +9,7 @@ namespace bole {
 /// this frame's log odds is the level of those before, as far as it can be known from their number:
 ///   log odds = shift + now * l + before * sum(w l) / (doubt + sum(w)),
 /// the sums over the earlier sightings, w falling with their age. The constants are what
-/// scripts/track_calibration fits on drives.
+/// `scripts/tracking FOLDER --fit` finds on drives.
 class TrackScore {
  public:
   /// Takes in the score that the detector gives in this frame, `elapsed` seconds after the last

@@ -57,15 +57,17 @@ void Tracker::reset() {
 
 // The robot goes on as it went, less and less surely (Ornstein and Uhlenbeck's process): where no
 // tree tells its motion any more it is taken to stand still, at any speed that a ground robot has.
+// It hardly goes sideways, but where its camera stands it may.
 MotionEstimate Tracker::prior(double elapsed) const {
   constexpr double kShiftSeconds = 30, kTurnSeconds = 0.5;
-  const MotionEstimate any{{}, 0.02 + 1.5 * elapsed, 0.01 + 0.5 * elapsed};
+  const MotionEstimate any{{}, 0.02 + 1.5 * elapsed, 0.01 + 0.3 * elapsed, 0.01 + 0.5 * elapsed};
   if (!motion_seconds_ || *motion_seconds_ <= 0) return any;
   const double ratio = elapsed / *motion_seconds_;
   const double shift = std::exp(-elapsed / kShiftSeconds), turn = std::exp(-elapsed / kTurnSeconds);
   const EgoMotion& last = motion_.mean;
   return {{shift * ratio * last.forward, shift * ratio * last.left, turn * ratio * last.turn},
-          faded(motion_.shift_sigma * ratio, any.shift_sigma, shift),
+          faded(motion_.forward_sigma * ratio, any.forward_sigma, shift),
+          faded(motion_.left_sigma * ratio, any.left_sigma, shift),
           faded(motion_.turn_sigma * ratio, any.turn_sigma, turn)};
 }
 
@@ -84,12 +86,12 @@ double Tracker::cost_of(const Tree& tree, const Track& track, const MotionEstima
   const GroundPoint at = moved(track.position(), motion.mean);
   const double range = std::hypot(at.x, at.y);
   const double turn = wrap_angle(tree.bearing - std::atan2(at.y, at.x));
-  const double reach = farthest_step(range) + motion.shift_sigma + motion.turn_sigma * range;
+  const double reach = farthest_step(range) + motion.forward_sigma + motion.turn_sigma * range;
   if (std::hypot(tree.range - range, turn * range) > reach) return Assignment::kForbidden;
   const Track::Expectation expected = track.expect(tree);
   const double step = tree.range - range - (expected.range - track.range());
   const double width = angular_width(track.diameter(), range);
-  const double shift = squared(motion.shift_sigma);
+  const double shift = squared(std::max(motion.forward_sigma, motion.left_sigma));
   const double across = expected.bearing_variance + squared(kPartOfWidth * width) +
                         squared(motion.turn_sigma) + shift / squared(range);
   const double along = expected.range_variance + squared(kPartOfRange * range) + shift;
@@ -110,9 +112,11 @@ MotionEstimate Tracker::estimate(std::span<const Tree> trees, const MotionEstima
       if (pairs[i] < 0) continue;
       const Track& track = tracks_[pairs[i]];
       const Track::Expectation expected = track.expect(trees[i]);
+      // What is no tree of the searched range, but a stem far behind, goes with the robot.
+      const double trust = std::max(trees[i].score, 0.01F);
       sightings_.push_back({track.position(), trees[i].bearing,
                             trees[i].range - (expected.range - track.range()),
-                            expected.bearing_variance, expected.range_variance});
+                            expected.bearing_variance / trust, expected.range_variance / trust});
     }
     motion = estimate_motion(sightings_, prior);
   }
@@ -144,13 +148,17 @@ void Tracker::update(std::span<Tree> trees, double elapsed,
     elapsed = 0;
   }
   const bool first = tracks_.empty();
-  motion_ = odometry ? MotionEstimate{*odometry, 0.01, 0.005} : estimate(trees, prior(elapsed));
+  motion_ =
+      odometry ? MotionEstimate{*odometry, 0.01, 0.01, 0.005} : estimate(trees, prior(elapsed));
   motion_seconds_ = first ? std::nullopt : std::optional(elapsed);
   for (Track& track : tracks_) track.move(motion_, elapsed);
 
   // However badly the motion is known: an id that jumps a metre is worse than a new one.
-  const std::span<const int> pairs =
-      match(trees, {{}, std::min(motion_.shift_sigma, 0.05), std::min(motion_.turn_sigma, 0.01)});
+  const MotionEstimate slack{{},
+                             std::min(motion_.forward_sigma, 0.05),
+                             std::min(motion_.left_sigma, 0.05),
+                             std::min(motion_.turn_sigma, 0.01)};
+  const std::span<const int> pairs = match(trees, slack);
   paired_.assign(tracks_.size(), 0);
   for (const int k : pairs) {
     if (k >= 0) paired_[k] = 1;

@@ -18,6 +18,7 @@ Processor::Processor(const WarpTable& table, double camera_height, const Search&
           make_detector(options.mode, {table.panorama(), table.seen(), camera_height, search})),
       vision_(table.panorama(), table.seen()),
       options_(std::move(options)),
+      search_(search),
       sharpened_(options_.track && options_.mode == DetectorMode::bole),
       clock_(clock),
       tracker_(sharpened_ ? Tracker::Scores::probabilities : Tracker::Scores::ranks) {
@@ -48,6 +49,14 @@ void Processor::track(std::int64_t captured_ns) {
   tracker_.update(trees_, std::max(elapsed, 0.0));
   last_captured_ns_ = captured_ns;
   leave_out_improbable();
+  leave_out_far();
+}
+
+// What the way shows to stand farther off than is searched.
+void Processor::leave_out_far() {
+  constexpr double kBeyond = 1.1;  // that a list may reach beyond the search
+  std::erase_if(trees_,
+                [this](const Tree& tree) { return tree.range > kBeyond * search_.range.high; });
 }
 
 Processor::Result Processor::process(const Frame& frame) {

@@ -56,6 +56,7 @@ class Processor {
  private:
   void choose(std::span<const Tree> found);
   void leave_out_improbable();
+  void leave_out_far();
   void track(std::int64_t captured_ns);
 
   Warper warper_;
@@ -63,6 +64,7 @@ class Processor {
   VisionHealth vision_;
   TreeListEncoder encoder_;
   const ProcessorOptions options_;
+  const Search search_;
   const bool sharpened_;  // scores by tracking
   const Clock& clock_;
   TreeList list_;
