@@ -7,9 +7,9 @@
 
 namespace bole {
 
-/// The logarithm of a panorama's brightness, above black, in bands of four rows, with running sums along each
-/// band: what all templates and features read. In the logarithm a contrast does not depend on how
-/// much light falls on it.
+/// The logarithm of a panorama's brightness, above black, in bands of four rows, with running sums
+/// along each band: what all templates and features read. In the logarithm a contrast does not
+/// depend on how much light falls on it.
 ///
 /// Columns run beyond the panorama by `margin` on either side, continued round the turn, or by the
 /// border's value where the camera sees less than a turn.

@@ -19,7 +19,7 @@ float probability(float logit) { return 1 / (1 + std::exp(-logit)); }
 
 // What scripts/calibration fits on drives through cameras that nothing was trained on.
 float calibrated(double score) {
-  constexpr double kSlope = 1.11, kShift = 0.03;
+  constexpr double kSlope = 1.07, kShift = 0.21;
   if (score >= 1) return 1;
   return static_cast<float>(1 / (1 + std::exp(-kSlope * std::log(score / (1 - score)) - kShift)));
 }

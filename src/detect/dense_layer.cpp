@@ -13,7 +13,6 @@
 namespace bole {
 namespace {
 
-constexpr float kLeak = 0.05F;
 constexpr float kUnit = 1.0F / (float{kInputUnits} * float{kWeightUnits});
 // What is added before a truncation, so that it rounds to the nearest whole number.
 constexpr float kFar = 16384;
@@ -70,14 +69,14 @@ void HiddenLayer(const std::int16_t* HWY_RESTRICT in, int pairs,
 
 #endif  // HWY_TARGET
 
-void OutputLayer(const float* HWY_RESTRICT in, int count, const float* HWY_RESTRICT weights,
-                 float* HWY_RESTRICT out) {
-  const hn::CappedTag<float, kOutputLanes> d;
-  for (int k = 0; k < kOutputLanes; k += static_cast<int>(hn::Lanes(d))) {
+void AddProducts(const float* HWY_RESTRICT in, int count, const float* HWY_RESTRICT weights,
+                 int units, float* HWY_RESTRICT out) {
+  const hn::CappedTag<float, 8> d;
+  for (int k = 0; k < units; k += static_cast<int>(hn::Lanes(d))) {
     auto p0 = hn::Zero(d), p1 = hn::Zero(d), p2 = hn::Zero(d), p3 = hn::Zero(d);
     for (int i = 0; i < count; i += 4) {
       const auto term = [&](int at) {
-        return hn::Mul(hn::Set(d, in[at]), hn::LoadU(d, weights + at * kOutputLanes + k));
+        return hn::Mul(hn::Set(d, in[at]), hn::LoadU(d, weights + at * units + k));
       };
       p0 = hn::Add(p0, term(i));
       p1 = hn::Add(p1, term(i + 1));
@@ -117,7 +116,7 @@ HWY_AFTER_NAMESPACE();
 namespace bole {
 
 HWY_EXPORT(HiddenLayer);
-HWY_EXPORT(OutputLayer);
+HWY_EXPORT(AddProducts);
 HWY_EXPORT(Standardise);
 
 void hidden_layer(const std::int16_t* in, int pairs, const std::int16_t* weights, const float* bias,
@@ -135,14 +134,14 @@ void hidden_layer_plain(const std::int16_t* in, int pairs, const std::int16_t* w
   }
 }
 
-void output_layer(const float* in, int count, const float* weights, float* out) {
-  HWY_DYNAMIC_DISPATCH(OutputLayer)(in, count, weights, out);
+void add_products(const float* in, int count, const float* weights, int units, float* out) {
+  HWY_DYNAMIC_DISPATCH(AddProducts)(in, count, weights, units, out);
 }
 
-void output_layer_plain(const float* in, int count, const float* weights, float* out) {
-  for (int k = 0; k < kOutputLanes; ++k) {
+void add_products_plain(const float* in, int count, const float* weights, int units, float* out) {
+  for (int k = 0; k < units; ++k) {
     float parts[4] = {};
-    for (int i = 0; i < count; ++i) parts[i % 4] += in[i] * weights[i * kOutputLanes + k];
+    for (int i = 0; i < count; ++i) parts[i % 4] += in[i] * weights[i * units + k];
     out[k] += (parts[0] + parts[1]) + (parts[2] + parts[3]);
   }
 }

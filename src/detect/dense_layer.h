@@ -10,10 +10,12 @@ namespace bole {
 /// The wide layer is summed in whole numbers, which are the same in any order, half as long as
 /// floats and multiplied two at a time: inputs in units of 1 / kInputUnits, weights of
 /// 1 / kWeightUnits.
-inline constexpr int kInputUnits = 2048, kWeightUnits = 8192;
-inline constexpr float kMostInput = 4;           ///< absolute value of an input
-inline constexpr float kMostWeight = 3;          ///< of a weight
-inline constexpr float kMostWeightsOfUnit = 30;  ///< sum of one unit's: the total stays below 2^31
+inline constexpr int kInputUnits = 2048, kWeightUnits = 2048;
+inline constexpr float kMostInput = 4;            ///< absolute value of an input
+inline constexpr float kMostWeight = 15;          ///< of a weight
+inline constexpr float kMostWeightsOfUnit = 120;  ///< sum of one unit's: the total stays below 2^31
+
+inline constexpr float kLeak = 0.05F;  ///< of a unit whose sum is negative
 
 /// out[i] = (in[i] - mean[i]) scale[i], cut off at `limit` on either side, to the nearest unit.
 /// `count` is at least 16, `limit` at most kMostInput.
@@ -22,17 +24,16 @@ void standardise(const float* in, int count, const float* mean, const float* sca
 void standardise_plain(const float* in, int count, const float* mean, const float* scale,
                        float limit, std::int16_t* out);
 
-/// out[j] = v or, where that is more, v / 20; v = bias[j] + the sum of in[i] weight(i, j), where
+/// out[j] = v or, where that is more, v kLeak; v = bias[j] + the sum of in[i] weight(i, j), where
 /// weight(i, j) = weights[(i / 2) 2 units + 2 j + i % 2]. `units` is a multiple of 48.
 void hidden_layer(const std::int16_t* in, int pairs, const std::int16_t* weights, const float* bias,
                   int units, float* out);
 void hidden_layer_plain(const std::int16_t* in, int pairs, const std::int16_t* weights,
                         const float* bias, int units, float* out);
 
-/// out[k] += in[i] weights[8 i + k] for eight k. Inputs are summed in four parts, i % 4 alike, of
-/// which 0 and 1, and 2 and 3 are joined first. `count` is a multiple of 4.
-inline constexpr int kOutputLanes = 8;
-void output_layer(const float* in, int count, const float* weights, float* out);
-void output_layer_plain(const float* in, int count, const float* weights, float* out);
+/// out[k] += in[i] weights[i units + k]. Inputs are summed in four parts, i % 4 alike, of which 0
+/// and 1, and 2 and 3 are joined first. `count` is a multiple of 4, `units` of 8.
+void add_products(const float* in, int count, const float* weights, int units, float* out);
+void add_products_plain(const float* in, int count, const float* weights, int units, float* out);
 
 }  // namespace bole

@@ -18,27 +18,28 @@ static_assert(weights::kLimit <= kMostInput);
 
 // The first layer's weights in whole units, two inputs side by side.
 constexpr int kPairs = (weights::kInputs + 1) / 2;
-alignas(64) constexpr auto kFirst = [] {
-  std::array<std::int16_t, std::size_t{2} * kPairs * weights::kHidden> units{};
-  for (int j = 0; j < weights::kHidden; ++j) {
+alignas(64) constexpr auto kToFirst = [] {
+  std::array<std::int16_t, std::size_t{2} * kPairs * weights::kFirst> units{};
+  for (int j = 0; j < weights::kFirst; ++j) {
     float all = 0;
     for (int i = 0; i < weights::kInputs; ++i) {
-      const float weight = weights::kFirst[i][j], size = weight < 0 ? -weight : weight;
+      const float weight = weights::kToFirst[i][j], size = weight < 0 ? -weight : weight;
       all += size;
       if (size > kMostWeight || all > kMostWeightsOfUnit) throw "too large for whole numbers";
-      units[(i / 2 * weights::kHidden + j) * 2 + i % 2] =
+      units[(i / 2 * weights::kFirst + j) * 2 + i % 2] =
           static_cast<std::int16_t>(weight * kWeightUnits + (weight < 0 ? -0.5F : 0.5F));
     }
   }
   return units;
 }();
 
-// The second layer's weights with columns of zeros, for whole vectors.
-static_assert(weights::kOutputs <= kOutputLanes);
-alignas(64) constexpr auto kSecond = [] {
-  std::array<std::array<float, kOutputLanes>, weights::kHidden> padded{};
-  for (int j = 0; j < weights::kHidden; ++j)
-    for (int k = 0; k < weights::kOutputs; ++k) padded[j][k] = weights::kSecond[j][k];
+// The last layer's weights with columns of zeros, for whole vectors.
+constexpr int kWidth = 8;
+static_assert(weights::kOutputs <= kWidth);
+alignas(64) constexpr auto kToOutput = [] {
+  std::array<std::array<float, kWidth>, weights::kSecond> padded{};
+  for (int j = 0; j < weights::kSecond; ++j)
+    for (int k = 0; k < weights::kOutputs; ++k) padded[j][k] = weights::kToOutput[j][k];
   return padded;
 }();
 
@@ -50,13 +51,17 @@ Judgement judge(const TrunkFeatures::Values& features) {
   inputs.back() = 0;
   standardise(features.data(), weights::kInputs, weights::kMean, weights::kScale, weights::kLimit,
               inputs.data());
-  std::array<float, weights::kHidden> hidden;
-  static_assert(weights::kHidden % 48 == 0);
-  hidden_layer(inputs.data(), kPairs, kFirst.data(), weights::kHiddenBias.data(), weights::kHidden,
-               hidden.data());
-  std::array<float, kOutputLanes> out{};
+  std::array<float, weights::kFirst> first;
+  static_assert(weights::kFirst % 48 == 0);
+  hidden_layer(inputs.data(), kPairs, kToFirst.data(), weights::kFirstBias.data(), weights::kFirst,
+               first.data());
+  std::array<float, weights::kSecond> second = weights::kSecondBias;
+  add_products(first.data(), weights::kFirst, weights::kToSecond[0], weights::kSecond,
+               second.data());
+  for (float& value : second) value = std::max(value, value * kLeak);
+  std::array<float, kWidth> out{};
   std::copy(weights::kOutputBias.begin(), weights::kOutputBias.end(), out.begin());
-  output_layer(hidden.data(), weights::kHidden, kSecond[0].data(), out.data());
+  add_products(second.data(), weights::kSecond, kToOutput[0].data(), kWidth, out.data());
   return {.logit = out[0],
           .centre_shift = out[1],
           .log_width = out[2],

@@ -13,7 +13,7 @@ struct Judgement {
   float log_sigma[3] = {0, 0, 0};  ///< of the three shifts' standard deviations, same units
 };
 
-/// One hidden layer over the features of a candidate; the weights come from tools/train.
+/// Two hidden layers over the features of a candidate; the weights come from tools/train.
 Judgement judge(const TrunkFeatures::Values& features);
 
 /// The shape that a judgement corrects `shape` to.

@@ -6,6 +6,7 @@
 
 #include "detect/foot_kernels.h"
 #include "detect/grid_kernels.h"
+#include "detect/row_contrasts.h"
 
 namespace bole {
 namespace {
@@ -125,7 +126,8 @@ void FeatureReader::read(const Bands& bands, const PanoramaView& panorama, const
   float* values = out.data();
   const float spread = read_grid(bands, shape, first_band, values);
   values += F::kHeights * F::kAcross;
-  read_foot(panorama, shape, spread, values);
+  float* const foot = values;
+  read_foot(panorama, shape, spread, foot);
   values += F::kFootRows * F::kStrips;
 
   const auto f = static_cast<float>(focal_);
@@ -152,7 +154,8 @@ void FeatureReader::read(const Bands& bands, const PanoramaView& panorama, const
       (shape.left_slope - shape.right_slope) * 20,
       shape.slope() * 20,
   };
-  std::copy(std::begin(numbers), std::end(numbers), values);
+  values = std::copy(std::begin(numbers), std::end(numbers), values);
+  even_contrasts(std::max(spread, kLeastSpread), out.data(), foot, values);
 }
 
 }  // namespace bole

@@ -18,7 +18,9 @@ struct TrunkFeatures {
   static constexpr int kFootRows = 16;  ///< fine rows about the foot
   static constexpr int kStrips = 3;     ///< of each: left of the trunk, its core, right of it
   static constexpr int kNumbers = 19;
-  static constexpr int kCount = kHeights * kAcross + kFootRows * kStrips + kNumbers;
+  static constexpr int kRowNumbers = 7;  ///< of each row of cells: see even_contrasts
+  static constexpr int kRowContrasts = kRowNumbers * kHeights + kHeights - 1 + 1;
+  static constexpr int kCount = kHeights * kAcross + kFootRows * kStrips + kNumbers + kRowContrasts;
   using Values = std::array<float, kCount>;
 };
 

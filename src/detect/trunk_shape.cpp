@@ -12,6 +12,9 @@ namespace {
 constexpr float kContrast = 0.22F * Bands::kScale;
 constexpr float kStrongContrast = 1.2F * Bands::kScale;
 constexpr float kLeastSum = 1.0F;    // of the contrast above another foot, in full bands
+constexpr float kFootReach = 6;      // rows: the network finds a foot that is this near
+constexpr float kMostTaper = 0.05F;  // difference of the edges' slopes
+constexpr int kLevelFeet = 3;
 constexpr float kFall = 0.4F;        // by how much it falls below it
 constexpr float kWrongSign = -0.7F;  // what a response of the wrong sign counts above the horizon
 
@@ -72,6 +75,12 @@ EdgeFitter::EdgeFitter(const DetectorSetup& setup)
     : width_(setup.panorama.width),
       horizon_band_(
           static_cast<int>(std::lround((setup.panorama.horizon_row() + 0.5) / Bands::kRows))),
+      horizon_(static_cast<float>(setup.panorama.horizon_row() + 0.5)),
+      lowest_row_(static_cast<float>(setup.panorama.rows)),
+      farthest_foot_(static_cast<float>(setup.height * setup.panorama.focal() /
+                                        (1.1 * setup.search.range.high))),
+      level_foot_{setup.height / setup.search.diameter.high,
+                  setup.height / setup.search.diameter.low},
       margin_(Templates::margin(setup)) {
   for (int x = -margin_; x < width_ + margin_; ++x) {
     const int column =
@@ -165,9 +174,14 @@ bool EdgeFitter::fit(const Bands& bands, const Candidate& c, TrunkShape& shape,
   const int sign = c.dark ? 1 : -1;
   const EdgeBands edges = along(bands, straight, c.foot, flank);
   const int foot = nearest(c.foot / Bands::kRows) - straight.first;
-  const EdgeLine left = search(edges, foot, c.left, reach, -sign);
-  const EdgeLine right = search(edges, foot, c.left + c.width, reach, sign);
+  EdgeLine left = search(edges, foot, c.left, reach, -sign);
+  EdgeLine right = search(edges, foot, c.left + c.width, reach, sign);
   if (right.column - left.column < 2.5F) return false;
+  if (std::abs(left.slope - right.slope) > kMostTaper) {
+    // One has gone astray, and more trunks stand upright than lean.
+    left.slope = right.slope =
+        std::abs(left.slope) < std::abs(right.slope) ? left.slope : right.slope;
+  }
   shape = {.foot = c.foot,
            .left = left.column,
            .right = right.column,
@@ -186,7 +200,7 @@ int EdgeFitter::other_feet(const Bands& bands, const TrunkShape& shape,
     int band = 0;
     float sum = 0;
   };
-  std::array<Peak, kOtherFeet> peaks;
+  std::array<Peak, kFeetByContrast> peaks;
   const auto offer = [&](Peak peak) {
     const float row = static_cast<float>(peak.band + 1) * Bands::kRows;
     if (std::abs(row - shape.foot) < std::max(8.0F, 0.35F * shape.width())) return;
@@ -221,6 +235,22 @@ int EdgeFitter::other_feet(const Bands& bands, const TrunkShape& shape,
   int count = 0;
   for (const Peak& peak : peaks)
     if (peak.sum > 0) feet[count++] = static_cast<float>((peak.band + 1) * Bands::kRows);
+  return add_level_feet(shape, feet, count);
+}
+
+int EdgeFitter::add_level_feet(const TrunkShape& shape, std::array<float, kOtherFeet>& feet,
+                               int count) const {
+  const int others = count;
+  const float width = shape.width();
+  const float high = std::max(static_cast<float>(level_foot_.low) * width, farthest_foot_);
+  const float low = static_cast<float>(level_foot_.high) * width;
+  const float reach = std::max({kFootReach, 0.6F * width, (low - high) / (2 * kLevelFeet)});
+  const float lowest = std::min(horizon_ + low, lowest_row_);
+  for (float row = horizon_ + high + reach; row < lowest && count < kOtherFeet; row += 2 * reach) {
+    const auto near = [&](float other) { return std::abs(row - other) < reach; };
+    if (!near(shape.foot) && std::none_of(feet.begin(), feet.begin() + others, near))
+      feet[count++] = row;
+  }
   return count;
 }
 

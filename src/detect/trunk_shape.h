@@ -47,7 +47,7 @@ class EdgeFitter {
 
   /// Other rows at which the trunk between these edges may end: where its contrast, summed down the
   /// edges, has a peak and then falls. Best first; returns how many.
-  static constexpr int kOtherFeet = 3;
+  static constexpr int kFeetByContrast = 3, kOtherFeet = 6;
   int other_feet(const Bands& bands, const TrunkShape& shape,
                  std::array<float, kOtherFeet>& feet) const;
 
@@ -69,9 +69,14 @@ class EdgeFitter {
   // them, columns.
   std::array<float, 2> place(const EdgeBands& bands, std::array<EdgeLine, 2>& lines,
                              int sign) const;
+  // Where searched trees of this width meet level ground, as contrast may tell nothing of a foot.
+  int add_level_feet(const TrunkShape& shape, std::array<float, kOtherFeet>& feet, int count) const;
   void judge(const EdgeBands& bands, const TrunkShape& shape, EdgeFit& fit) const;
 
   int width_, horizon_band_;
+  float horizon_, lowest_row_;   // rows
+  float farthest_foot_;          // of a searched tree on level ground: rows below the horizon
+  Bounds level_foot_;            // of searched trees there: rows below the horizon per column
   int margin_;                   // columns before the first and after the last one
   std::vector<int> first_seen_;  // band, for each column and those of the margins
 };

@@ -1,11 +1,13 @@
-// dump_candidates OUT FRAME...: what the network is to learn from, by the detector's own code. For
-// every frame the candidates, some of them shaken, and shapes about the true trunks; of each
-// kHead + TrunkFeatures::kCount floats: frame number, label (1 trunk, 0 none), shifts to the truth
-// (see Judgement), weight, then the features.
+// dump_candidates OUT SECOND_LOOKS FRAME...: what the network is to learn from, by the detector's
+// own code. For every frame the candidates, some of them shaken, and shapes about the true trunks;
+// where SECOND_LOOKS is 1 and not 0, also what the network, as it was built in, takes for a trunk:
+// what it is mistaken in, it learns most from. Of each kHead + TrunkFeatures::kCount floats: frame
+// number, label (1 trunk, 0 none), shifts to the truth (see Judgement), weight, then the features.
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,7 +20,10 @@ namespace bole::train {
 namespace {
 
 constexpr int kHead = 6;
-constexpr double kMostNegatives = 200;  // a frame; the others are drawn from, and weigh more
+constexpr double kMostNegatives = 200;   // a frame; the others are drawn from, and weigh more
+constexpr float kWorthASecondLook = -3;  // logit, as in TrunkFinder
+constexpr double kNear = 1.35;           // of what a trunk's shape may be off: neither
+constexpr float kSecondLooks = 0.4F;     // share of them that is kept
 constexpr double kReferenceFocal = 1440 / 6.283185307;
 
 struct Label {
@@ -36,9 +41,10 @@ PanoramaGeometry misjudged(PanoramaGeometry geometry, simulate::Random& random) 
 
 class Dump {
  public:
-  Dump(const TrainingFrame& frame, int number, std::FILE* out)
+  Dump(const TrainingFrame& frame, int number, bool second_looks, std::FILE* out)
       : frame_(frame),
         number_(number),
+        second_looks_(second_looks),
         out_(out),
         random_(static_cast<std::uint64_t>(number), 41),
         focal_(frame.geometry.focal()),
@@ -57,9 +63,13 @@ class Dump {
       EdgeFit fit;
       if (!finder_.fit(candidate, shape, fit)) continue;
       put_candidate(shape, fit, kept);
+      put_second_look(shape, fit);
       std::array<float, EdgeFitter::kOtherFeet> feet;
       const int count = finder_.other_feet(shape, feet);
-      for (int i = 0; i < count; ++i) put_candidate(ended_at(shape, feet[i]), fit, 0.5 * kept);
+      for (int i = 0; i < count; ++i) {
+        put_candidate(ended_at(shape, feet[i]), fit, 0.25 * kept);
+        put_second_look(ended_at(shape, feet[i]), fit);
+      }
     }
     for (std::size_t i = 0; i < found_.size(); ++i) put_true(frame_.trunks[i], found_[i]);
   }
@@ -78,6 +88,17 @@ class Dump {
       finder_.refine(shaken, shaken_fit);
       put(shaken, shaken_fit, 0.5F / chance);
     }
+  }
+
+  void put_second_look(TrunkShape shape, EdgeFit fit) {
+    TrunkFeatures::Values features;
+    if (!second_looks_ || !finder_.read(frame_.view(), shape, fit, features)) return;
+    const Judgement judgement = judge(features);
+    if (judgement.logit < kWorthASecondLook || !random_.chance(kSecondLooks)) return;
+    shape = corrected(shape, judgement, focal_);
+    if (!finder_.read(frame_.view(), shape, fit, features)) return;
+    finder_.refine(shape, fit);
+    put(shape, fit, 1 / kSecondLooks);
   }
 
   // Shapes close about a true trunk, as the second look meets them.
@@ -172,7 +193,7 @@ class Dump {
       const double w = std::abs(log_width) / 0.42;
       const double y = std::abs(down) / std::max(6 * scale_, 0.6 * width);
       const bool tight = x < 1 && w < 1 && y < 1;
-      near_one |= x < 2 && w < 1.9 && y < 2 && (!tight || trunk.visible < 0.25F);
+      near_one |= x < kNear && w < kNear && y < kNear && (!tight || trunk.visible < 0.25F);
       const double cost = x * x + w * w + y * y;
       if (!tight || trunk.visible < 0.25F || cost >= least) continue;
       least = cost;
@@ -188,6 +209,7 @@ class Dump {
 
   const TrainingFrame& frame_;
   int number_;
+  bool second_looks_;
   std::FILE* out_;
   simulate::Random random_;
   double focal_, scale_;
@@ -200,16 +222,17 @@ class Dump {
 }  // namespace bole::train
 
 int main(int count, char** arguments) {
-  if (count < 3) {
-    std::fputs("usage: dump_candidates OUT FRAME...\n", stderr);
+  if (count < 4) {
+    std::fputs("usage: dump_candidates OUT SECOND_LOOKS FRAME...\n", stderr);
     return 2;
   }
   std::FILE* out = std::fopen(arguments[1], "wb");
   if (!out) return 1;
-  for (int i = 2; i < count; ++i) {
+  const bool second_looks = std::atoi(arguments[2]) == 1;
+  for (int i = 3; i < count; ++i) {
     const std::filesystem::path file = arguments[i];
     const auto frame = bole::train::TrainingFrame::load(file);
-    bole::train::Dump(frame, std::stoi(file.stem().string()), out).run();
+    bole::train::Dump(frame, std::stoi(file.stem().string()), second_looks, out).run();
   }
   return std::fclose(out) == 0 ? 0 : 1;
 }

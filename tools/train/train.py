@@ -5,28 +5,35 @@ usage: train.py --out src/detect/weights.inc [DUMP...]
 
 Without a dump it writes a network that knows nothing, for changed features to be built with.
 
-One hidden layer of 96 leaky units over the standardised features, and seven outputs: the logit of
+Two hidden layers of leaky units over the standardised features, and seven outputs: the logit of
 'this is a trunk', the shifts of middle, log width and foot that lead to it, and the logarithms of
 their standard deviations. Every sample is shown mirrored, too. Gaussian noise on the inputs keeps
-the network from leaning on details that only the simulator has; the last epochs, without noise, teach
-the shifts and their deviations alone. Every eighth frame is held out and only reported on. The same
-dumps give the same weights.
+the network from leaning on details that only the simulator has; the last epochs go without, so that
+the deviations are those of clean inputs. Every eighth frame is held out and only reported on.
 """
 import argparse
 
+import jax
+import jax.numpy as jnp
 import numpy as np
+import optax
 
 HEAD = 6  # frame, label, three shifts, weight: see dump_candidates.cpp
 HEIGHTS, ACROSS, FOOT_ROWS, STRIPS, NUMBERS = 11, 12, 16, 3, 19  # see trunk_features.h
 GRID = HEIGHTS * ACROSS
-FEATURES = GRID + FOOT_ROWS * STRIPS + NUMBERS
+ROW_NUMBERS = 7
+ROWS = GRID + FOOT_ROWS * STRIPS + NUMBERS  # where the rows' numbers begin
+FEATURES = ROWS + ROW_NUMBERS * HEIGHTS + HEIGHTS
+LEFT_EDGE, RIGHT_EDGE = (slice(ROWS + k * HEIGHTS, ROWS + (k + 1) * HEIGHTS) for k in (2, 3))
 LEFT_RIGHT_NUMBERS = [(5, 6), (8, 9), (13, 14)]  # that change places in a mirror
 SIDEWAYS_NUMBERS = [18]  # that change sign in a mirror
 POLARITY_NUMBER = 3  # 1 dark, -1 bright
-HIDDEN, OUTPUTS, LEAK = 96, 7, 0.05
+HIDDEN, OUTPUTS, LEAK = (192, 48), 7, 0.05
 LIMIT = 4.0  # of a standardised feature
+MOST_WEIGHT = 8  # of a sample: it stands for others that were not kept
+SHIFTS_WEIGHT = 0.12  # of their likelihood beside the logit's
 BRIGHT_WEIGHT = 2.5  # of bright trunks: they are the fewer, but as good to run into
-EPOCHS, LAST_EPOCHS, BATCH, RATE, DECAY, NOISE = 20, 5, 512, 3e-3, 1e-4, 0.3
+EPOCHS, LAST_EPOCHS, BATCH, RATE, DECAY, NOISE = 10, 2, 2048, 3e-3, 1e-4, 0.15
 
 
 def load(paths):
@@ -42,108 +49,114 @@ def mirrored(head, x):
         m[:, n + a], m[:, n + b] = x[:, n + b], x[:, n + a]
     for a in SIDEWAYS_NUMBERS:
         m[:, n + a] *= -1
+    m[:, LEFT_EDGE], m[:, RIGHT_EDGE] = x[:, RIGHT_EDGE], x[:, LEFT_EDGE]
     return head * np.float32([1, 1, -1, 1, 1, 1]), m
 
 
-class Network:
-    def __init__(self, x, random):
+def first_weights(random):
+    sizes = (FEATURES, *HIDDEN, OUTPUTS)
+    layers = [(random.normal(0, np.sqrt(2 / n), (n, m)), np.zeros(m))
+              for n, m in zip(sizes, sizes[1:])]
+    return jax.tree.map(np.float32, layers)
+
+
+def forward(layers, z):
+    for weights, bias in layers[:-1]:
+        z = jax.nn.leaky_relu(z @ weights + bias, LEAK)
+    return z @ layers[-1][0] + layers[-1][1]
+
+
+def loss(layers, z, head):
+    out = forward(layers, z)
+    label, shifts, weight = head[:, 1], head[:, 2:5], head[:, 5]
+    logit = optax.sigmoid_binary_cross_entropy(out[:, 0], label)
+    # The shifts' negative log likelihood; large errors pull like a Laplacian's.
+    log_sigma = out[:, 4:].clip(-4.5, 3)
+    error = (out[:, 1:4] - shifts) * jnp.exp(-log_sigma)
+    shift = (optax.huber_loss(error, delta=3.0) + log_sigma).sum(1)
+    return (weight * (logit + SHIFTS_WEIGHT * (label == 1) * shift)).mean()
+
+
+class Standardised:
+    """Features as the network sees them."""
+
+    def __init__(self, x):
         self.mean, self.scale = x.mean(0), 1 / (x.std(0) + 1e-3)
-        first = random.normal(0, np.sqrt(2 / FEATURES), (FEATURES, HIDDEN))
-        second = random.normal(0, 0.1, (HIDDEN, OUTPUTS))
-        bias = [0, 0, 0, 0, -2, -2, 0]
-        self.weights = [np.float32(w) for w in (first, np.zeros(HIDDEN), second, bias)]
 
-    def standardised(self, x):
-        return ((x - self.mean) * self.scale).clip(-LIMIT, LIMIT).astype(np.float32)
-
-    def forward(self, z):
-        first, hidden_bias, second, output_bias = self.weights
-        sums = z @ first + hidden_bias
-        hidden = np.where(sums > 0, sums, LEAK * sums)
-        return sums, hidden, hidden @ second + output_bias
-
-    def gradients(self, z, head):
-        sums, hidden, out = self.forward(z)
-        label, shifts, weight = head[:, 1], head[:, 2:5], head[:, 5]
-        g = np.zeros_like(out)
-        g[:, 0] = (1 / (1 + np.exp(-out[:, 0].clip(-30, 30))) - label) * weight
-        # The shifts' negative log likelihood; large errors pull like a Laplacian's.
-        trunk = (0.12 * weight * (label == 1))[:, None]
-        log_sigma = out[:, 4:].clip(-4.5, 3)
-        error = (out[:, 1:4] - shifts) * np.exp(-log_sigma)
-        damped = np.exp(-log_sigma) * np.minimum(1, 8 * np.exp(log_sigma))
-        g[:, 1:4] = trunk * error.clip(-3, 3) * damped
-        g[:, 4:] = trunk * (1 - error * error.clip(-3, 3))
-        g /= len(z)
-        back = (g @ self.weights[2].T) * np.where(sums > 0, 1, LEAK)
-        return [z.T @ back + DECAY * self.weights[0], back.sum(0), hidden.T @ g, g.sum(0)]
+    def __call__(self, x):
+        parts = np.array_split(x, 1 + len(x) // 65536)  # halves of floats: memory is what runs out
+        return np.concatenate([((part - self.mean) * self.scale).clip(-LIMIT, LIMIT)
+                               .astype(np.float16) for part in parts])
 
 
-def train(head, x, random):
-    network = Network(x, random)
-    z = network.standardised(x)
+def weighed(head, x):
     head = head.copy()
-    head[:, 5] = np.minimum(head[:, 5], 8)
+    head[:, 5] = np.minimum(head[:, 5], MOST_WEIGHT)
     bright = x[:, GRID + FOOT_ROWS * STRIPS + POLARITY_NUMBER] < 0
     head[bright & (head[:, 1] == 1), 5] *= BRIGHT_WEIGHT
     head[:, 5] /= head[:, 5].mean()
-    first = [np.zeros_like(w) for w in network.weights]
-    second = [np.zeros_like(w) for w in network.weights]
-    step, steps = 0, (EPOCHS + LAST_EPOCHS) * (len(z) // BATCH)
+    return head
+
+
+def train(head, z, random):
+    layers = first_weights(random)
+    steps = len(z) // BATCH
+    rate = optax.warmup_cosine_decay_schedule(0, RATE, 200, (EPOCHS + LAST_EPOCHS) * steps, 1e-5)
+    optimiser = optax.adamw(rate, weight_decay=DECAY)
+    state = optimiser.init(layers)
+
+    @jax.jit
+    def step(layers, state, z, head, key, noise):
+        z = z.astype(jnp.float32) + noise * jax.random.normal(key, z.shape)
+        change, state = optimiser.update(jax.grad(loss)(layers, z, head), state, layers)
+        return optax.apply_updates(layers, change), state
+
+    key = jax.random.PRNGKey(0)
     for epoch in range(EPOCHS + LAST_EPOCHS):
-        last = epoch >= EPOCHS
-        for batch in np.array_split(random.permutation(len(z)), len(z) // BATCH):
-            noise = 0 if last else NOISE * random.standard_normal((len(batch), FEATURES), np.float32)
-            step += 1
-            rate = RATE * min(1, step / 200) * (0.5 + 0.5 * np.cos(np.pi * step / steps)) + 1e-5
-            gradients = network.gradients(z[batch] + noise, head[batch])
-            if last:
-                rate = max(rate, 5e-4)
-                gradients = [0 * gradients[0], 0 * gradients[1], *gradients[2:]]
-                gradients[2][:, 0] = gradients[3][0] = 0
-                first = [f * (g != 0) for f, g in zip(first, gradients)]
-            for i, g in enumerate(gradients):  # Adam
-                first[i] = 0.9 * first[i] + 0.1 * g
-                second[i] = 0.999 * second[i] + 0.001 * g * g
-                change = first[i] / (1 - 0.9**step) / (np.sqrt(second[i] / (1 - 0.999**step)) + 1e-7)
-                network.weights[i] -= np.float32(rate * change)
-    return network
+        noise = NOISE if epoch < EPOCHS else 0.0
+        for batch in random.permutation(len(z))[:steps * BATCH].reshape(steps, BATCH):
+            key, now = jax.random.split(key)
+            layers, state = step(layers, state, z[batch], head[batch], now, noise)
+    return jax.tree.map(np.asarray, layers)
 
 
-def report(network, head, x):
-    out = network.forward(network.standardised(x))[2]
-    trunk, weight = head[:, 1] == 1, head[:, 5]
-    p = 1 / (1 + np.exp(-out[:, 0]))
-    loss = -(weight * np.log(np.where(trunk, p, 1 - p) + 1e-9)).mean()
+def report(layers, head, z):
+    out = np.asarray(forward(layers, z.astype(np.float32)))
+    trunk, weight = head[:, 1] == 1, np.minimum(head[:, 5], MOST_WEIGHT)
+    log_loss = np.logaddexp(0, np.where(trunk, -out[:, 0], out[:, 0]))
+    taken = out[:, 0] > 0
     left = np.median(abs(head[trunk, 2:5] - out[trunk, 1:4]), 0) * 1.48
-    print(f"held out: {len(x)} samples, log loss {loss:.4f}, recall {(p[trunk] > 0.5).mean():.3f}, "
+    print(f"held out: {len(z)} samples, log loss {np.average(log_loss, weights=weight):.4f}, "
+          f"recall {taken[trunk].mean():.3f}, "
+          f"precision {np.average(trunk[taken], weights=weight[taken]):.3f}, "
           f"left of the shifts {left.round(3)} of {head[trunk, 2:5].std(0).round(3)}")
 
 
-def write(network, path):
+def write(standardised, layers, path):
     def numbers(values):
         return ", ".join(np.format_float_positional(v, 6, fractional=False, trim="0") + "F"
                          for v in values)
 
-    def rows(matrix):
-        return ",\n    ".join("{" + numbers(row) + "}" for row in matrix)
+    def matrix(name, sizes, values):
+        rows = ",\n    ".join("{" + numbers(row) + "}" for row in values)
+        return f"constexpr float {name}{sizes} = {{\n    {rows}}};\n"
 
-    first, hidden_bias, second, output_bias = network.weights
+    (first, first_bias), (second, second_bias), (third, third_bias) = layers
     with open(path, "w") as out:
         out.write(f"""// Written by tools/train/train.py.
 namespace weights {{
-constexpr int kInputs = {FEATURES}, kHidden = {HIDDEN}, kOutputs = {OUTPUTS};
+constexpr int kInputs = {FEATURES}, kFirst = {HIDDEN[0]}, kSecond = {HIDDEN[1]}, kOutputs = {OUTPUTS};
 constexpr float kLimit = {LIMIT}F;
-constexpr float kMean[kInputs] = {{{numbers(network.mean)}}};
-constexpr float kScale[kInputs] = {{{numbers(network.scale)}}};
-constexpr std::array<float, kHidden> kHiddenBias = {{{numbers(hidden_bias)}}};
-constexpr std::array<float, kOutputs> kOutputBias = {{{numbers(output_bias)}}};
-constexpr float kFirst[kInputs][kHidden] = {{
-    {rows(first)}}};
-constexpr float kSecond[kHidden][kOutputs] = {{
-    {rows(second)}}};
-}}  // namespace weights
+constexpr float kMean[kInputs] = {{{numbers(standardised.mean)}}};
+constexpr float kScale[kInputs] = {{{numbers(standardised.scale)}}};
+constexpr std::array<float, kFirst> kFirstBias = {{{numbers(first_bias)}}};
+constexpr std::array<float, kSecond> kSecondBias = {{{numbers(second_bias)}}};
+constexpr std::array<float, kOutputs> kOutputBias = {{{numbers(third_bias)}}};
 """)
+        out.write(matrix("kToFirst", "[kInputs][kFirst]", first))
+        out.write(matrix("kToSecond", "[kFirst][kSecond]", second))
+        out.write(matrix("kToOutput", "[kSecond][kOutputs]", third))
+        out.write("}  // namespace weights\n")
 
 
 def main():
@@ -152,16 +165,22 @@ def main():
     parser.add_argument("--out", required=True)
     parser.add_argument("dumps", nargs="*")
     arguments = parser.parse_args()
+    random = np.random.default_rng(0)
     if not arguments.dumps:
-        write(Network(np.zeros((1, FEATURES), np.float32), np.random.default_rng(0)), arguments.out)
+        write(Standardised(np.zeros((1, FEATURES), np.float32)), first_weights(random), arguments.out)
         return
     head, x = load(arguments.dumps)
     held_out = head[:, 0].astype(int) % 8 == 0
-    twins = mirrored(head[~held_out], x[~held_out])
-    network = train(np.concatenate([head[~held_out], twins[0]]),
-                    np.concatenate([x[~held_out], twins[1]]), np.random.default_rng(0))
-    report(network, head[held_out], x[held_out])
-    write(network, arguments.out)
+    tested = head[held_out], x[held_out]
+    head, x = head[~held_out], x[~held_out]
+    standardised = Standardised(np.concatenate([x[::8], mirrored(head[::8], x[::8])[1]]))
+    weighed_head = weighed(head, x)
+    z = standardised(x)
+    twin_head, x = mirrored(weighed_head, x)
+    layers = train(np.concatenate([weighed_head, twin_head]), np.concatenate([z, standardised(x)]),
+                   random)
+    report(layers, tested[0], standardised(tested[1]))
+    write(standardised, layers, arguments.out)
 
 
 if __name__ == "__main__":

@@ -146,7 +146,7 @@ TEST_P(Kernels, JudgeAsThePlainLoops) {
   std::vector<std::int16_t> in(206), weights(206 * 96);
   for (auto& value : in) value = static_cast<std::int16_t>(random.uniform(-8192, 8192));
   for (auto& weight : weights) weight = static_cast<std::int16_t>(1000 * random.normal());
-  std::vector<float> bias(96), fast(96), plain(96), second(96 * kOutputLanes);
+  std::vector<float> bias(96), fast(96), plain(96), second(96 * 48);
   for (auto* values : {&bias, &second})
     for (float& value : *values) value = random.normal();
   for (const int units : {48, 96}) {
@@ -154,10 +154,12 @@ TEST_P(Kernels, JudgeAsThePlainLoops) {
     hidden_layer_plain(in.data(), 103, weights.data(), bias.data(), units, plain.data());
     EXPECT_EQ(fast, plain);
   }
-  std::vector<float> out(kOutputLanes, 0.5F), out_plain = out;
-  output_layer(plain.data(), 96, second.data(), out.data());
-  output_layer_plain(plain.data(), 96, second.data(), out_plain.data());
-  EXPECT_EQ(out, out_plain);
+  for (const int units : {8, 48}) {
+    std::vector<float> out(units, 0.5F), out_plain = out;
+    add_products(plain.data(), 96, second.data(), units, out.data());
+    add_products_plain(plain.data(), 96, second.data(), units, out_plain.data());
+    EXPECT_EQ(out, out_plain);
+  }
 }
 
 TEST_P(Kernels, StandardiseAsThePlainLoop) {
