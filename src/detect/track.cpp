@@ -16,6 +16,8 @@ constexpr double kLasting = 0.75, kFleeting = 0.7;
 constexpr double kLastingSeconds = 3.0;
 // Bearings and widths err alike in frames that follow each other: so many sightings count for one.
 constexpr double kAlikeBearings = 8.0, kAlikeWidths = 3.0;
+// The robot's way is known from the trees alone, and its length no better than this share.
+constexpr double kScale = 0.04;
 constexpr double kOutlier = 4.0;  // squared misfit, in variances, that halves a sighting's weight
 
 double squared(double x) { return x * x; }
@@ -116,7 +118,7 @@ void Track::see(Tree& tree) {
 void Track::write(Tree& tree) const {
   const Vec3 across = bearing_gradient();
   const Vec3 along{state_.x / range(), state_.y / range(), 0};
-  const double range_variance = dot(along, covariance_ * along);
+  const double range_variance = dot(along, covariance_ * along) + squared(kScale * range());
   tree.id = id_;
   tree.bearing = static_cast<float>(std::atan2(state_.y, state_.x));
   tree.range = static_cast<float>(range());

@@ -9,12 +9,16 @@
 namespace bole {
 namespace {
 
-constexpr double kForgetAfter = 3.0;  // seconds a tree may stay unseen and keep its id
+constexpr double kForgetAfter = 5.0;  // seconds a tree may stay unseen and keep its id
 constexpr std::size_t kMostTracks = 256;
-constexpr double kGate = 30.0;         // misfit at which a sighting is no more of a track
-constexpr double kWidthSpread = 0.2;   // of log angular width between two sightings of one tree
-constexpr double kPartlySeen = 8.0;    // most that a wrong width costs: half a trunk may be lit
-constexpr double kPartOfWidth = 0.3;   // that its middle is off by then
+constexpr double kGate = 30.0;        // misfit at which a sighting is no more of a track
+constexpr double kWidthSpread = 0.2;  // of log angular width between two sightings of one tree
+constexpr double kPartlySeen = 8.0;   // most that a wrong width costs: half a trunk may be lit
+constexpr double kPartOfWidth = 0.3;  // that its middle is off by then
+constexpr double kJustSeen = 0.3;     // seconds
+constexpr double kSamePlace = 0.15;   // of a tree's width
+constexpr double kSameWidth = 0.75;   // in kWidthSpread
+constexpr double kFartherIfSame = 1.6;
 constexpr double kBeyondEdge = 0.15;   // of a tree's width, that a part of it may stand out
 constexpr double kNearer = 0.6;        // metres that a part of a tree may seem nearer
 constexpr double kPartOfRange = 0.05;  // that a range is off by when another foot is found
@@ -86,16 +90,20 @@ double Tracker::cost_of(const Tree& tree, const Track& track, const MotionEstima
   const GroundPoint at = moved(track.position(), motion.mean);
   const double range = std::hypot(at.x, at.y);
   const double turn = wrap_angle(tree.bearing - std::atan2(at.y, at.x));
-  const double reach = farthest_step(range) + motion.forward_sigma + motion.turn_sigma * range;
+  const double width = angular_width(track.diameter(), range);
+  const double ratio = std::log(std::max(tree.angular_width, 0.001F) / width) / kWidthSpread;
+  // What stays in its place and keeps its width is one tree, whatever foot is found.
+  const bool same = track.unseen() < kJustSeen && std::abs(turn) < kSamePlace * width &&
+                    std::abs(ratio) < kSameWidth;
+  const double reach = (same ? kFartherIfSame : 1) * farthest_step(range) + motion.forward_sigma +
+                       motion.turn_sigma * range;
   if (std::hypot(tree.range - range, turn * range) > reach) return Assignment::kForbidden;
   const Track::Expectation expected = track.expect(tree);
   const double step = tree.range - range - (expected.range - track.range());
-  const double width = angular_width(track.diameter(), range);
   const double shift = squared(std::max(motion.forward_sigma, motion.left_sigma));
   const double across = expected.bearing_variance + squared(kPartOfWidth * width) +
                         squared(motion.turn_sigma) + shift / squared(range);
   const double along = expected.range_variance + squared(kPartOfRange * range) + shift;
-  const double ratio = std::log(std::max(tree.angular_width, 0.001F) / width) / kWidthSpread;
   const double shape = ratio > 0 ? squared(ratio) : std::min(squared(ratio), kPartlySeen);
   const double misfit = squared(turn) / across + squared(step) / along + shape;
   return misfit > kGate ? Assignment::kForbidden : misfit + track.unseen();

@@ -261,14 +261,38 @@ TEST(Tracker, TakesTheLitHalfOfATrunkForTheTree) {
 
 TEST(Tracker, KeepsTheIdOfATreeWhoseRangeJumps) {
   // Grass hides the foot, and another one is found; middle and width still agree.
+  Tree tree = seen({6, 2, 0.4}, {});
+  tree.range_sigma = 0.8F;
+  Tree farther = tree;
+  farther.range += 2;
+  Tree narrower = farther;
+  narrower.angular_width *= 0.6F;
+  for (const auto& [next, same] : {std::pair(farther, true), std::pair(narrower, false)}) {
+    Tracker tracker;
+    std::vector<Tree> one{tree};
+    tracker.update(one, 0);
+    one[0] = next;
+    tracker.update(one, 0.1);
+    EXPECT_EQ(one[0].id == 0, same);
+  }
+}
+
+TEST(Tracker, ImprobableTreesTellLittleOfTheRobotsMotion) {
+  // Four trees ahead, and eight stems far behind that are taken for trees at 8 m: they go along.
   Tracker tracker;
-  const Tree tree = seen({6, 2, 0.4}, {});
-  std::vector<Tree> one{tree};
-  tracker.update(one, 0);
-  one[0] = tree;
-  one[0].range += 1.0F;
-  tracker.update(one, 0.1);
-  EXPECT_EQ(one[0].id, 0);
+  for (int frame = 0; frame < 40; ++frame) {
+    std::vector<Tree> trees;
+    for (const double y : {-4.0, -2.0, 2.0, 4.0}) {
+      trees.push_back(seen({12, y, 0.3}, {0.1 * frame + 2, 0, 0}));
+    }
+    for (int k = 0; k < 8; ++k) {
+      Tree stem = seen({8 * std::cos(0.5 * k + 1), 8 * std::sin(0.5 * k + 1), 0.3}, {});
+      stem.score = 0.06F;
+      trees.push_back(stem);
+    }
+    tracker.update(trees, frame == 0 ? 0 : 0.1);
+  }
+  EXPECT_NEAR(tracker.last_motion().forward, 0.1, 0.02);
 }
 
 TEST(Tracker, NeverGivesTheIdOfAHiddenTreeToItsNeighbourBehind) {
