@@ -130,9 +130,14 @@ HWY_INLINE FoundEdge Highest(const EdgeSearch& search, const SearchBuffers& buff
   const hn::CappedTag<float, kEdgeLanes> d;
   const hn::RebindToSigned<decltype(d)> di;
   const hn::Rebind<std::int16_t, decltype(d)> d16;
+  const int step = static_cast<int>(hn::Lanes(d));
+  constexpr int kCentre = EdgeSearch::kPlaces / 2;
   alignas(64) float values[EdgeSearch::kPlaces];
-  alignas(64) std::int32_t slopes[EdgeSearch::kPlaces];
-  for (int i = 0; i < EdgeSearch::kPlaces; i += static_cast<int>(hn::Lanes(d))) {
+  alignas(64) std::int32_t lines[EdgeSearch::kPlaces];  // first by slope, then by place
+  auto highest = hn::Set(d, -1e9F);
+  for (int i = 0; i < EdgeSearch::kPlaces; i += step) {
+    const auto off = hn::Abs(hn::Sub(hn::Iota(di, i), hn::Set(di, kCentre)));
+    const auto outside = hn::RebindMask(d, hn::Gt(off, hn::Set(di, search.reach)));
     auto best = hn::Set(d, -1e9F);
     auto slope = hn::Zero(di);
     for (int s = 0; s < EdgeSearch::kSlopes; ++s) {
@@ -141,17 +146,20 @@ HWY_INLINE FoundEdge Highest(const EdgeSearch& search, const SearchBuffers& buff
       slope = hn::IfThenElse(hn::RebindMask(di, hn::Gt(value, best)), hn::Set(di, s), slope);
       best = hn::Max(best, value);
     }
+    best = hn::IfThenElse(outside, hn::Set(d, -1e9F), best);
+    highest = hn::Max(highest, best);
     hn::Store(best, d, values + i);
-    hn::Store(slope, di, slopes + i);
+    hn::Store(hn::Add(hn::Mul(slope, hn::Set(di, EdgeSearch::kPlaces)), hn::Iota(di, i)), di,
+              lines + i);
   }
-  constexpr int kCentre = EdgeSearch::kPlaces / 2;
-  FoundEdge found{slopes[kCentre - search.reach], kCentre - search.reach};
-  for (int i = kCentre - search.reach;
-       i <= std::min(kCentre + search.reach, EdgeSearch::kPlaces - 1); ++i) {
-    const float higher = values[i] - values[found.place];
-    if (higher > 0 || (higher == 0 && slopes[i] < found.slope)) found = {slopes[i], i};
+  highest = hn::MaxOfLanes(d, highest);
+  auto first = hn::Set(di, EdgeSearch::kSlopes * EdgeSearch::kPlaces);
+  for (int i = 0; i < EdgeSearch::kPlaces; i += step) {
+    const auto lower = hn::RebindMask(di, hn::Lt(hn::Load(d, values + i), highest));
+    first = hn::Min(first, hn::IfThenElse(lower, first, hn::Load(di, lines + i)));
   }
-  return found;
+  const std::int32_t line = hn::GetLane(hn::MinOfLanes(di, first));
+  return {line / EdgeSearch::kPlaces, line % EdgeSearch::kPlaces};
 }
 
 FoundEdge FindEdge(const EdgeBands& bands, const EdgeSearch& search) {

@@ -132,7 +132,10 @@ bool TrunkFinder::same_pixels(const TrunkShape& a, const TrunkShape& b) const {
   const float row = std::min(a.foot, b.foot);
   const auto left = [&](const TrunkShape& s) { return s.left + s.slope() * (row - s.foot); };
   const float turn = static_cast<float>(columns_);
-  float shift = wraps_ ? turn * std::round((a.centre() - b.centre()) / turn) : 0;
+  // Whole turns between them; std::round would be a call.
+  constexpr float kMany = 16;
+  const float turns = (a.centre() - b.centre()) / turn + (kMany + 0.5F);
+  const float shift = wraps_ ? turn * (static_cast<float>(static_cast<int>(turns)) - kMany) : 0;
   const float a0 = left(a), a1 = a0 + a.width(), b0 = left(b) + shift, b1 = b0 + b.width();
   const float narrower = std::min(a.width(), b.width());
   if (std::min(a1, b1) - std::max(a0, b0) > 0.5F * narrower) return true;
