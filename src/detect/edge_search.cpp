@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 
 #include "detect/bands.h"
 
@@ -30,13 +31,14 @@ constexpr int shift_at(int slopes, int distance) {
   return std::min((thousandths + 500) / 1000, kMiddle);
 }
 
-// The least distance at which a line stands so many columns to a side.
+// The least distance at which a line stands so many columns to a side: never, where it is upright.
 constexpr auto kDistances = [] {
   std::array<std::array<int, kMiddle + 1>, kUpright + 1> distances{};
-  for (int slopes = 0; slopes <= kUpright; ++slopes) {
-    for (int shift = 0; shift <= kMiddle; ++shift) {
+  for (int shift = 1; shift <= kMiddle; ++shift) {
+    distances[0][shift] = std::numeric_limits<int>::max();
+    for (int slopes = 1; slopes <= kUpright; ++slopes) {
       int& distance = distances[slopes][shift];
-      while (slopes > 0 && shift_at(slopes, distance) < shift) ++distance;
+      while (shift_at(slopes, distance) < shift) ++distance;
     }
   }
   return distances;
@@ -165,8 +167,7 @@ HWY_INLINE FoundEdge Highest(const EdgeSearch& search, const SearchBuffers& buff
 FoundEdge FindEdge(const EdgeBands& bands, const EdgeSearch& search) {
   SearchBuffers buffers;
   for (int i = 0; i < EdgeSearch::kColumns; i += kLanes) SumResponses(bands, search, i, buffers);
-  SumSlopes(bands, 0, 0, buffers);
-  for (int slopes = 1; slopes <= kUpright; ++slopes) SumSlopes(bands, search.foot, slopes, buffers);
+  for (int slopes = 0; slopes <= kUpright; ++slopes) SumSlopes(bands, search.foot, slopes, buffers);
   return Highest(search, buffers);
 }
 
