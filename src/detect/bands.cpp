@@ -48,12 +48,12 @@ void Bands::compute(const PanoramaView& panorama) {
     for (int i = 0; i < kRows; ++i) rows[i] = panorama.row(band * kRows + i);
     sum_four_rows(rows, width_, row_sum_.data());
     std::uint16_t* sums = sums_.data() + static_cast<std::size_t>(band) * pitch_ + margin_;
-    std::uint16_t total = 0;
+    unsigned total = 0;
     for (int x = 0; x < width_; ++x) {
-      sums[x] = total;
-      total = static_cast<std::uint16_t>(total + log_[row_sum_[x]]);
+      sums[x] = static_cast<std::uint16_t>(total);
+      total += log_[row_sum_[x]];
     }
-    sums[width_] = total;
+    sums[width_] = static_cast<std::uint16_t>(total);
     extend(sums);
 
     const std::uint16_t* at = sums - margin_;

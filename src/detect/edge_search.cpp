@@ -89,7 +89,7 @@ HWY_INLINE void SumResponses(const EdgeBands& bands, const EdgeSearch& search, i
   const auto share = hn::Set(d, share_of_flank(bands, search)), wrong_sign = hn::Set(d, -11);
   const std::uint16_t* at = bands.sums + search.first_column + column;
   auto sum = hn::Zero(d);
-  hn::Store(sum, d, buffers.sums[0] + column);
+  hn::StoreU(sum, d, buffers.sums[0] + column);
   for (int band = 0; band < bands.count; ++band, at += bands.pitch) {
     const auto middle = hn::LoadU(du, at);
     const auto beside = hn::Add(hn::LoadU(du, at + bands.flank), hn::LoadU(du, at - bands.flank));
@@ -97,7 +97,7 @@ HWY_INLINE void SumResponses(const EdgeBands& bands, const EdgeSearch& search, i
     auto value = hn::MulFixedPoint15(hn::Min(hn::Max(bend, hn::Neg(most)), most), share);
     if (band < bands.horizon) value = hn::Max(value, hn::ShiftRight<4>(hn::Mul(value, wrong_sign)));
     sum = hn::Add(sum, value);
-    hn::Store(sum, d, buffers.sums[band + 1] + column);
+    hn::StoreU(sum, d, buffers.sums[band + 1] + column);
   }
 }
 
@@ -166,7 +166,11 @@ HWY_INLINE FoundEdge Highest(const EdgeSearch& search, const SearchBuffers& buff
 
 FoundEdge FindEdge(const EdgeBands& bands, const EdgeSearch& search) {
   SearchBuffers buffers;
-  for (int i = 0; i < EdgeSearch::kColumns; i += kLanes) SumResponses(bands, search, i, buffers);
+  // Narrow trunks that are not tall need half the columns; what else is read does not count.
+  const bool near = shift_at(kUpright, search.foot) + search.reach < kMiddle;
+  const int first = near ? kMiddle : 0;
+  for (int i = first; i < EdgeSearch::kColumns - first; i += kLanes)
+    SumResponses(bands, search, i, buffers);
   for (int slopes = 0; slopes <= kUpright; ++slopes) SumSlopes(bands, search.foot, slopes, buffers);
   return Highest(search, buffers);
 }
