@@ -29,62 +29,104 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR  // a processor without vectors
 
-void HiddenLayer(const std::int16_t* in, int pairs, const std::int16_t* weights, const float* bias,
-                 int units, float* out) {
-  hidden_layer_plain(in, pairs, weights, bias, units, out);
+void HiddenLayer(const std::int16_t* in, int looks, int pairs, const std::int16_t* weights,
+                 const float* bias, int units, float* out) {
+  hidden_layer_plain(in, looks, pairs, weights, bias, units, out);
 }
 
 #else
 
-// Three vectors of units at a time: enough of them to hide the additions' latency.
-void HiddenLayer(const std::int16_t* HWY_RESTRICT in, int pairs,
-                 const std::int16_t* HWY_RESTRICT weights, const float* HWY_RESTRICT bias,
-                 int units, float* HWY_RESTRICT out) {
+// So many looks and vectors of units at a time that weights and inputs are read seldom, and all
+// sums stay in registers.
+template <int kLooks, int kVectors>
+void SumUnits(const std::int16_t* HWY_RESTRICT in, int pairs,
+              const std::int16_t* HWY_RESTRICT weights, const float* HWY_RESTRICT bias, int units,
+              float* HWY_RESTRICT out) {
   const hn::CappedTag<std::int32_t, 16> d;
   const hn::Repartition<std::int16_t, decltype(d)> d16;
   const hn::RebindToFloat<decltype(d)> df;
   const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
-  for (std::ptrdiff_t j = 0; j < units; j += 3 * lanes) {
-    auto a = hn::Zero(d), b = hn::Zero(d), c = hn::Zero(d);
-    auto more_a = hn::Zero(d), more_b = hn::Zero(d), more_c = hn::Zero(d);
-    for (std::ptrdiff_t i = 0; i < pairs; ++i) {
+  hn::Vec<decltype(d)> sums[kLooks][kVectors], more[kLooks][kVectors];
+  for (int look = 0; look < kLooks; ++look)
+    for (int v = 0; v < kVectors; ++v) sums[look][v] = more[look][v] = hn::Zero(d);
+  for (std::ptrdiff_t i = 0; i < pairs; ++i, weights += 2 * units) {
+    hn::Vec<decltype(d16)> pair[kLooks];
+    for (int look = 0; look < kLooks; ++look) {
       std::int32_t both = 0;
-      std::memcpy(&both, in + 2 * i, sizeof both);
-      const auto pair = hn::BitCast(d16, hn::Set(d, both));
-      const std::int16_t* row = weights + 2 * (i * units + j);
-      a = hn::ReorderWidenMulAccumulate(d, hn::LoadU(d16, row), pair, a, more_a);
-      b = hn::ReorderWidenMulAccumulate(d, hn::LoadU(d16, row + 2 * lanes), pair, b, more_b);
-      c = hn::ReorderWidenMulAccumulate(d, hn::LoadU(d16, row + 4 * lanes), pair, c, more_c);
+      std::memcpy(&both, in + 2 * (look * pairs + i), sizeof both);
+      pair[look] = hn::BitCast(d16, hn::Set(d, both));
     }
-    const auto finish = [&](auto sum, auto more, std::ptrdiff_t at) {
-      const auto total = hn::ConvertTo(df, hn::RearrangeToOddPlusEven(sum, more));
-      const auto value = hn::Add(hn::LoadU(df, bias + at), hn::Mul(total, hn::Set(df, kUnit)));
-      hn::StoreU(hn::Max(value, hn::Mul(value, hn::Set(df, kLeak))), df, out + at);
-    };
-    finish(a, more_a, j);
-    finish(b, more_b, j + lanes);
-    finish(c, more_c, j + 2 * lanes);
+    for (int v = 0; v < kVectors; ++v) {
+      const auto weight = hn::LoadU(d16, weights + 2 * v * lanes);
+      for (int look = 0; look < kLooks; ++look) {
+        sums[look][v] =
+            hn::ReorderWidenMulAccumulate(d, weight, pair[look], sums[look][v], more[look][v]);
+      }
+    }
+  }
+  for (int look = 0; look < kLooks; ++look) {
+    for (int v = 0; v < kVectors; ++v) {
+      const auto total =
+          hn::ConvertTo(df, hn::RearrangeToOddPlusEven(sums[look][v], more[look][v]));
+      const auto value =
+          hn::Add(hn::LoadU(df, bias + v * lanes), hn::Mul(total, hn::Set(df, kUnit)));
+      hn::StoreU(hn::Max(value, hn::Mul(value, hn::Set(df, kLeak))), df,
+                 out + look * units + v * lanes);
+    }
+  }
+}
+
+void HiddenLayer(const std::int16_t* HWY_RESTRICT in, int looks, int pairs,
+                 const std::int16_t* HWY_RESTRICT weights, const float* HWY_RESTRICT bias,
+                 int units, float* HWY_RESTRICT out) {
+  const int step = 3 * static_cast<int>(hn::Lanes(hn::CappedTag<std::int32_t, 16>()));
+  for (int look = 0; look < looks;) {
+    const bool all = looks - look >= kLooksAtOnce;
+    for (std::ptrdiff_t j = 0; j < units; j += step) {
+      (all ? SumUnits<kLooksAtOnce, 3> : SumUnits<1, 3>)(in + std::ptrdiff_t{2} * look * pairs,
+                                                         pairs, weights + 2 * j, bias + j, units,
+                                                         out + look * units + j);
+    }
+    look += all ? kLooksAtOnce : 1;
   }
 }
 
 #endif  // HWY_TARGET
 
+template <class D, int kVectors>
+HWY_INLINE void AddSome(const float* HWY_RESTRICT in, int count, const float* HWY_RESTRICT weights,
+                        int units, float* HWY_RESTRICT out) {
+  const D d;
+  const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
+  hn::Vec<D> parts[4][kVectors];
+  for (auto& part : parts)
+    for (auto& sum : part) sum = hn::Zero(d);
+  for (std::ptrdiff_t i = 0; i < count; i += 4) {
+    for (int p = 0; p < 4; ++p) {
+      const auto value = hn::Set(d, in[i + p]);
+      for (int v = 0; v < kVectors; ++v) {
+        const auto weight = hn::LoadU(d, weights + (i + p) * units + v * lanes);
+        parts[p][v] = hn::Add(parts[p][v], hn::Mul(value, weight));
+      }
+    }
+  }
+  for (int v = 0; v < kVectors; ++v, out += lanes) {
+    const auto sum = hn::Add(hn::Add(parts[0][v], parts[1][v]), hn::Add(parts[2][v], parts[3][v]));
+    hn::StoreU(hn::Add(hn::LoadU(d, out), sum), d, out);
+  }
+}
+
 void AddProducts(const float* HWY_RESTRICT in, int count, const float* HWY_RESTRICT weights,
                  int units, float* HWY_RESTRICT out) {
-  const hn::CappedTag<float, 8> d;
-  for (int k = 0; k < units; k += static_cast<int>(hn::Lanes(d))) {
-    auto p0 = hn::Zero(d), p1 = hn::Zero(d), p2 = hn::Zero(d), p3 = hn::Zero(d);
-    for (int i = 0; i < count; i += 4) {
-      const auto term = [&](int at) {
-        return hn::Mul(hn::Set(d, in[at]), hn::LoadU(d, weights + at * units + k));
-      };
-      p0 = hn::Add(p0, term(i));
-      p1 = hn::Add(p1, term(i + 1));
-      p2 = hn::Add(p2, term(i + 2));
-      p3 = hn::Add(p3, term(i + 3));
-    }
-    const auto sum = hn::Add(hn::Add(p0, p1), hn::Add(p2, p3));
-    hn::StoreU(hn::Add(hn::LoadU(d, out + k), sum), d, out + k);
+  using Wide = hn::CappedTag<float, 16>;
+  using Narrow = hn::CappedTag<float, 8>;
+  const int wide = 3 * static_cast<int>(hn::Lanes(Wide()));
+  const int narrow = static_cast<int>(hn::Lanes(Narrow()));
+  if (units % wide == 0) {
+    for (int k = 0; k < units; k += wide) AddSome<Wide, 3>(in, count, weights + k, units, out + k);
+  } else {
+    for (int k = 0; k < units; k += narrow)
+      AddSome<Narrow, 1>(in, count, weights + k, units, out + k);
   }
 }
 
@@ -119,18 +161,21 @@ HWY_EXPORT(HiddenLayer);
 HWY_EXPORT(AddProducts);
 HWY_EXPORT(Standardise);
 
-void hidden_layer(const std::int16_t* in, int pairs, const std::int16_t* weights, const float* bias,
-                  int units, float* out) {
-  HWY_DYNAMIC_DISPATCH(HiddenLayer)(in, pairs, weights, bias, units, out);
+void hidden_layer(const std::int16_t* in, int looks, int pairs, const std::int16_t* weights,
+                  const float* bias, int units, float* out) {
+  HWY_DYNAMIC_DISPATCH(HiddenLayer)(in, looks, pairs, weights, bias, units, out);
 }
 
-void hidden_layer_plain(const std::int16_t* in, int pairs, const std::int16_t* weights,
+void hidden_layer_plain(const std::int16_t* in, int looks, int pairs, const std::int16_t* weights,
                         const float* bias, int units, float* out) {
-  for (int j = 0; j < units; ++j) {
-    std::int32_t sum = 0;
-    for (int i = 0; i < 2 * pairs; ++i) sum += in[i] * weights[(i / 2) * 2 * units + 2 * j + i % 2];
-    const float value = bias[j] + static_cast<float>(sum) * kUnit;
-    out[j] = std::max(value, value * kLeak);
+  for (int look = 0; look < looks; ++look, in += 2 * pairs) {
+    for (int j = 0; j < units; ++j) {
+      std::int32_t sum = 0;
+      for (int i = 0; i < 2 * pairs; ++i)
+        sum += in[i] * weights[(i / 2) * 2 * units + 2 * j + i % 2];
+      const float value = bias[j] + static_cast<float>(sum) * kUnit;
+      *out++ = std::max(value, value * kLeak);
+    }
   }
 }
 

@@ -24,11 +24,14 @@ void standardise(const float* in, int count, const float* mean, const float* sca
 void standardise_plain(const float* in, int count, const float* mean, const float* scale,
                        float limit, std::int16_t* out);
 
-/// out[j] = v or, where that is more, v kLeak; v = bias[j] + the sum of in[i] weight(i, j), where
-/// weight(i, j) = weights[(i / 2) 2 units + 2 j + i % 2]. `units` is a multiple of 48.
-void hidden_layer(const std::int16_t* in, int pairs, const std::int16_t* weights, const float* bias,
-                  int units, float* out);
-void hidden_layer_plain(const std::int16_t* in, int pairs, const std::int16_t* weights,
+/// For each of `looks` inputs and outputs, one after the other: out[j] = v or, where that is more,
+/// v kLeak; v = bias[j] + the sum of in[i] weight(i, j), where
+/// weight(i, j) = weights[(i / 2) 2 units + 2 j + i % 2]. `units` is a multiple of 48. Four looks
+/// at a time read the weights once.
+inline constexpr int kLooksAtOnce = 4;
+void hidden_layer(const std::int16_t* in, int looks, int pairs, const std::int16_t* weights,
+                  const float* bias, int units, float* out);
+void hidden_layer_plain(const std::int16_t* in, int looks, int pairs, const std::int16_t* weights,
                         const float* bias, int units, float* out);
 
 /// out[k] += in[i] weights[i units + k]. Inputs are summed in four parts, i % 4 alike, of which 0

@@ -43,21 +43,10 @@ alignas(64) constexpr auto kToOutput = [] {
   return padded;
 }();
 
-}  // namespace
-
-Judgement judge(const TrunkFeatures::Values& features) {
-  // What was never seen in training is taken for the most extreme that was.
-  std::array<std::int16_t, std::size_t{2} * kPairs> inputs;
-  inputs.back() = 0;
-  standardise(features.data(), weights::kInputs, weights::kMean, weights::kScale, weights::kLimit,
-              inputs.data());
-  std::array<float, weights::kFirst> first;
-  static_assert(weights::kFirst % 48 == 0);
-  hidden_layer(inputs.data(), kPairs, kToFirst.data(), weights::kFirstBias.data(), weights::kFirst,
-               first.data());
+// From the first hidden layer on.
+Judgement judge_units(const float* first) {
   std::array<float, weights::kSecond> second = weights::kSecondBias;
-  add_products(first.data(), weights::kFirst, weights::kToSecond[0], weights::kSecond,
-               second.data());
+  add_products(first, weights::kFirst, weights::kToSecond[0], weights::kSecond, second.data());
   for (float& value : second) value = std::max(value, value * kLeak);
   std::array<float, kWidth> out{};
   std::copy(weights::kOutputBias.begin(), weights::kOutputBias.end(), out.begin());
@@ -67,6 +56,33 @@ Judgement judge(const TrunkFeatures::Values& features) {
           .log_width = out[2],
           .foot_shift = out[3],
           .log_sigma = {out[4], out[5], out[6]}};
+}
+
+}  // namespace
+
+void judge(std::span<const TrunkFeatures::Values> features, std::span<Judgement> judgements) {
+  std::array<std::array<std::int16_t, std::size_t{2} * kPairs>, kLooksAtOnce> inputs;
+  std::array<std::array<float, weights::kFirst>, kLooksAtOnce> first;
+  static_assert(weights::kFirst % 48 == 0);
+  for (std::size_t done = 0; done < features.size();) {
+    const std::size_t count = std::min<std::size_t>(kLooksAtOnce, features.size() - done);
+    for (std::size_t i = 0; i < count; ++i) {
+      // What was never seen in training is taken for the most extreme that was.
+      inputs[i].back() = 0;
+      standardise(features[done + i].data(), weights::kInputs, weights::kMean, weights::kScale,
+                  weights::kLimit, inputs[i].data());
+    }
+    hidden_layer(inputs[0].data(), static_cast<int>(count), kPairs, kToFirst.data(),
+                 weights::kFirstBias.data(), weights::kFirst, first[0].data());
+    for (std::size_t i = 0; i < count; ++i) judgements[done + i] = judge_units(first[i].data());
+    done += count;
+  }
+}
+
+Judgement judge(const TrunkFeatures::Values& features) {
+  Judgement judgement;
+  judge(std::span(&features, 1), std::span(&judgement, 1));
+  return judgement;
 }
 
 TrunkShape corrected(const TrunkShape& shape, const Judgement& judgement, double focal) {

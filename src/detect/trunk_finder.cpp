@@ -64,10 +64,10 @@ std::span<Trunk> TrunkFinder::find(const PanoramaView& panorama) {
   sights_.clear();
   for (const Candidate& candidate : candidates(panorama)) {
     Sight sight;
-    if (!fit(candidate, sight.trunk.shape, sight.trunk.fit)) continue;
-    judge(panorama, sight);
-    if (sight.judgement.logit >= kWorthOtherFeet) sights_.push_back(sight);
+    if (fit(candidate, sight.trunk.shape, sight.trunk.fit)) sights_.push_back(sight);
   }
+  judge(panorama, sights_);
+  std::erase_if(sights_, [](const Sight& s) { return s.judgement.logit < kWorthOtherFeet; });
   std::sort(sights_.begin(), sights_.end(), [](const Sight& a, const Sight& b) {
     return a.judgement.logit != b.judgement.logit ? a.judgement.logit > b.judgement.logit
                                                   : a.trunk.shape.left < b.trunk.shape.left;
@@ -82,10 +82,25 @@ std::span<Trunk> TrunkFinder::find(const PanoramaView& panorama) {
   return kept_;
 }
 
-void TrunkFinder::judge(const PanoramaView& panorama, Sight& sight) const {
-  TrunkFeatures::Values features;
-  const bool seen = read(panorama, sight.trunk.shape, sight.trunk.fit, features);
-  sight.judgement = seen ? bole::judge(features) : Judgement{.logit = kHopeless};
+// Some at a time: the network's weights are read once for all of them.
+void TrunkFinder::judge(const PanoramaView& panorama, std::span<Sight> sights) const {
+  constexpr std::size_t kAtOnce = 8;
+  std::array<TrunkFeatures::Values, kAtOnce> features;
+  std::array<Judgement, kAtOnce> judgements;
+  std::array<Sight*, kAtOnce> seen;
+  std::size_t count = 0;
+  const auto judge_seen = [&] {
+    bole::judge(std::span(features).first(count), judgements);
+    for (std::size_t i = 0; i < count; ++i) seen[i]->judgement = judgements[i];
+    count = 0;
+  };
+  for (Sight& sight : sights) {
+    sight.judgement = {.logit = kHopeless};
+    if (!read(panorama, sight.trunk.shape, sight.trunk.fit, features[count])) continue;
+    seen[count++] = &sight;
+    if (count == kAtOnce) judge_seen();
+  }
+  judge_seen();
 }
 
 // A second look, from where the first one says that the trunk is.
@@ -95,7 +110,7 @@ void TrunkFinder::look_again(const PanoramaView& panorama, Sight sight) {
   trunk.shape = corrected(trunk.shape, sight.judgement, focal_);
   if (!readable(trunk.shape)) return;
   refine(trunk.shape, trunk.fit);
-  judge(panorama, sight);
+  judge(panorama, std::span(&sight, 1));
   const Judgement& judgement = sight.judgement;
   if (judgement.logit < kWorthAnswering || trunks_.size() == trunks_.capacity()) return;
   const float width = trunk.shape.width(), unit = foot_unit(trunk.shape, focal_);
@@ -110,10 +125,14 @@ void TrunkFinder::look_again(const PanoramaView& panorama, Sight sight) {
 void TrunkFinder::look_at_other_feet(const PanoramaView& panorama, const Sight& sight) {
   std::array<float, EdgeFitter::kOtherFeet> feet;
   const int count = other_feet(sight.trunk.shape, feet);
+  std::array<Sight, EdgeFitter::kOtherFeet> others;
   for (int i = 0; i < count; ++i) {
-    Sight other = sight;
-    other.trunk.shape = ended_at(sight.trunk.shape, feet[i]);
-    judge(panorama, other);
+    others[i] = sight;
+    others[i].trunk.shape = ended_at(sight.trunk.shape, feet[i]);
+  }
+  const auto all = std::span(others).first(static_cast<std::size_t>(count));
+  judge(panorama, all);
+  for (const Sight& other : all) {
     if (!explained(other.trunk.shape, other.judgement.logit + kFarBetter))
       look_again(panorama, other);
   }

@@ -49,7 +49,7 @@ class TrunkFinder {
     Trunk trunk;
     Judgement judgement;
   };
-  void judge(const PanoramaView& panorama, Sight& sight) const;
+  void judge(const PanoramaView& panorama, std::span<Sight> sights) const;
   void look_again(const PanoramaView& panorama, Sight sight);
   void look_at_other_feet(const PanoramaView& panorama, const Sight& sight);
   bool explained(const TrunkShape& shape, float logit) const;

@@ -50,13 +50,13 @@ struct RoughBands {
   static constexpr int kCount = 61, kPitch = 700;
   std::vector<std::uint16_t> sums;
 
-  explicit RoughBands(std::uint64_t seed) {
+  explicit RoughBands(std::uint64_t seed, int bands_a_column = 4) {
     simulate::Random random(seed);
     for (int band = 0; band < kCount; ++band) {
       std::uint16_t total = 0;
       for (int x = 0; x < kPitch; ++x) {
         sums.push_back(total);
-        const float level = x > 300 + band / 4 ? 1000.0F : 940.0F;
+        const float level = x > 300 + band / bands_a_column ? 1000.0F : 940.0F;
         total = static_cast<std::uint16_t>(total + static_cast<int>(level + 60 * random.normal()));
       }
     }
@@ -143,15 +143,16 @@ TEST_P(Kernels, SumColumnsAsThePlainLoops) {
 
 TEST_P(Kernels, JudgeAsThePlainLoops) {
   simulate::Random random(4);
-  std::vector<std::int16_t> in(206), weights(206 * 96);
+  constexpr int kLooks = kLooksAtOnce + 2;
+  std::vector<std::int16_t> in(206 * kLooks), weights(206 * 96);
   for (auto& value : in) value = static_cast<std::int16_t>(random.uniform(-8192, 8192));
   for (auto& weight : weights) weight = static_cast<std::int16_t>(1000 * random.normal());
-  std::vector<float> bias(96), fast(96), plain(96), second(96 * 48);
+  std::vector<float> bias(96), fast(96 * kLooks), plain(96 * kLooks), second(96 * 48);
   for (auto* values : {&bias, &second})
     for (float& value : *values) value = random.normal();
   for (const int units : {48, 96}) {
-    hidden_layer(in.data(), 103, weights.data(), bias.data(), units, fast.data());
-    hidden_layer_plain(in.data(), 103, weights.data(), bias.data(), units, plain.data());
+    hidden_layer(in.data(), kLooks, 103, weights.data(), bias.data(), units, fast.data());
+    hidden_layer_plain(in.data(), kLooks, 103, weights.data(), bias.data(), units, plain.data());
     EXPECT_EQ(fast, plain);
   }
   for (const int units : {8, 48}) {
@@ -174,8 +175,8 @@ TEST_P(Kernels, StandardiseAsThePlainLoop) {
 }
 
 TEST_P(Kernels, FindEdgesAsThePlainLoops) {
-  for (int seed = 0; seed < 40; ++seed) {
-    const RoughBands rough(seed);
+  for (int seed = 0; seed < 80; ++seed) {
+    const RoughBands rough(seed, seed % 3 == 0 ? RoughBands::kCount : 4);
     const EdgeBands bands = rough.bands(2 + seed % 7);
     const EdgeSearch search{.first_column = 280 + seed % 30,
                             .reach = 2 + seed % 9,
