@@ -13,21 +13,26 @@ namespace bole {
 namespace {
 
 constexpr float kLeastScore = 0.05F;
+constexpr float kHardly = 0.02F;  // probability that is not worth a place
 constexpr float kWitness = 0.3F;  // probability of a trunk that tells of the ground's tilt
 
-float probability(float logit) { return 1 / (1 + std::exp(-logit)); }
+float probability(double logit) { return static_cast<float>(1 / (1 + std::exp(-logit))); }
 
-// What scripts/calibration fits on drives through cameras that nothing was trained on.
-float calibrated(double score) {
-  constexpr double kSlope = 1.07, kShift = 0.21;
+// What scripts/calibration fits on drives through cameras that nothing was trained on. Where many
+// trees are seen, what looks a little like one is one more often than elsewhere; `seen` is how many
+// there probably are.
+float calibrated(double score, double seen) {
+  constexpr double kSlope = 0.87, kShift = -0.04, kCrowd = 0.46, kFew = 7;
   if (score >= 1) return 1;
-  return static_cast<float>(1 / (1 + std::exp(-kSlope * std::log(score / (1 - score)) - kShift)));
+  const double crowd = kCrowd * std::log(std::max(1.0, (seen + 1) / (kFew + 1)));
+  return probability(kSlope * std::log(score / (1 - score)) + kShift + crowd);
 }
 
 class BoleDetector final : public Detector {
  public:
   explicit BoleDetector(const DetectorSetup& setup)
       : panorama_(setup.panorama),
+        height_(setup.height),
         range_(setup.height, setup.search),
         tilt_(setup.height),
         finder_(setup) {
@@ -39,12 +44,15 @@ class BoleDetector final : public Detector {
     trees_.clear();
     const std::span<const Trunk> trunks = finder_.find(panorama);
     const GroundTilt tilt = tilt_of(trunks);
+    double seen = 0;
     for (const Trunk& trunk : trunks) {
       // Its place can only make it less probable.
-      if (calibrated(probability(trunk.logit)) < kLeastScore) continue;
-      const Tree tree = tree_of(trunk, tilt);
-      if (tree.score >= kLeastScore && trees_.size() < trees_.capacity()) trees_.push_back(tree);
+      if (probability(trunk.logit) < kHardly || trees_.size() == trees_.capacity()) break;
+      trees_.push_back(tree_of(trunk, tilt));
+      seen += trees_.back().score;
     }
+    for (Tree& tree : trees_) tree.score = calibrated(tree.score, seen);
+    std::erase_if(trees_, [](const Tree& tree) { return tree.score < kLeastScore; });
     // Not std::stable_sort, which allocates.
     std::sort(trees_.begin(), trees_.end(), [](const Tree& a, const Tree& b) {
       return std::tie(b.score, a.bearing) < std::tie(a.score, b.bearing);
@@ -58,6 +66,7 @@ class BoleDetector final : public Detector {
   Tree tree_of(const Trunk& trunk, const GroundTilt& tilt) const;
 
   PanoramaGeometry panorama_;
+  double height_;
   RangePosterior range_;
   TiltEstimator tilt_;
   TrunkFinder finder_;
@@ -69,13 +78,16 @@ TrunkSight BoleDetector::sight_of(const Trunk& trunk) const {
   const double focal = panorama_.focal();
   return {.down = -panorama_.tangent_of_row(trunk.shape.foot - 0.5),
           .down_sigma = trunk.foot_sigma / focal,
-          .angular_width = std::clamp(trunk.shape.width() / focal, 1e-3, 2.5)};
+          .angular_width = std::clamp(trunk.shape.width() / focal, 1e-3, 2.5),
+          .cut = trunk.cut};
 }
 
 GroundTilt BoleDetector::tilt_of(std::span<const Trunk> trunks) {
   witnesses_.clear();
   for (const Trunk& trunk : trunks) {
-    if (probability(trunk.logit) < kWitness || witnesses_.size() == witnesses_.capacity()) continue;
+    if (trunk.cut || probability(trunk.logit) < kWitness ||
+        witnesses_.size() == witnesses_.capacity())
+      continue;
     witnesses_.push_back({.bearing = panorama_.bearing_of_column(trunk.shape.centre() - 0.5),
                           .sight = sight_of(trunk),
                           .lean = trunk.shape.slope(),
@@ -94,16 +106,19 @@ Tree BoleDetector::tree_of(const Trunk& trunk, const GroundTilt& tilt) const {
   const RangeEstimate place = range_.estimate(level);
   Tree tree;
   if (place.searched <= 0) return tree;
-  const double diameter = 2 * place.range * std::sin(seen.angular_width / 2);
+  const double s = std::sin(seen.angular_width / 2), diameter = 2 * place.range * s;
+  // Of a foot out of sight, where it must be.
+  const double down =
+      seen.cut ? height_ / (place.range * (1 - s)) - tilt.raise(bearing) : seen.down;
   tree.bearing = static_cast<float>(bearing);
   tree.range = static_cast<float>(place.range);
   tree.diameter = static_cast<float>(diameter);
-  tree.score = calibrated(probability(trunk.logit) * place.searched);
+  tree.score = static_cast<float>(probability(trunk.logit) * place.searched);
   tree.bearing_sigma = static_cast<float>(trunk.centre_sigma / focal);
   tree.range_sigma = static_cast<float>(place.sigma);
   tree.diameter_sigma =
       static_cast<float>(diameter * std::hypot(trunk.width_sigma, place.sigma / place.range));
-  tree.base_elevation = static_cast<float>(std::atan(-seen.down));
+  tree.base_elevation = static_cast<float>(std::atan(-down));
   tree.angular_width = static_cast<float>(seen.angular_width);
   return tree;
 }

@@ -57,7 +57,7 @@ RangePosterior::Points RangePosterior::points(const TrunkSight& sight) const {
     const double off = kStep * (i - kMiddle);
     const double down = std::max(sight.down + off * sigma, 1e-4);
     const double range = height_ / (down * (1 - s)), log_range = std::log(range);
-    const bool real = sight.down + off * sigma > 1e-4;
+    const bool real = !sight.cut && sight.down + off * sigma > 1e-4;
     points.range[i] = range;
     points.log_range[i] = log_range;
     // d log(range) = d down / down; the normal density's sigma cancels the step's.
@@ -69,7 +69,8 @@ RangePosterior::Points RangePosterior::points(const TrunkSight& sight) const {
   const double rough_sigma = std::hypot(kRoughSigma, sight.down_sigma);
   for (int i = 0; i < kRoughSteps; ++i) {
     const double range = rough_range_[i], log_range = rough_log_range_[i];
-    const double off = (sight.down - height_ / (range * (1 - s))) / rough_sigma;
+    const double above = (sight.down - height_ / (range * (1 - s))) / rough_sigma;
+    const double off = sight.cut ? std::max(above, 0.0) : above;
     points.range[kEvenSteps + i] = range;
     points.log_range[kEvenSteps + i] = log_range;
     points.weight[kEvenSteps + i] =

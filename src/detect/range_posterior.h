@@ -11,6 +11,7 @@ struct TrunkSight {
   double down = 0;           ///< tangent of the foot's depression; negative above the horizon
   double down_sigma = 0;     ///< standard deviation of its measurement
   double angular_width = 0;  ///< radians
+  bool cut = false;          ///< the foot is out of sight below that
 };
 
 /// Where it stands, from foot, width and what is known of trees and ground.
@@ -26,7 +27,8 @@ struct RangeEstimate {
 /// the foot: on even ground down = height / (range (1 - s)) with s = sin(width / 2), but for the
 /// attitude's error and the ground's unevenness; with a small probability the ground rises or
 /// falls, or something hides the foot, and then it says little. So the foot decides as long as it
-/// agrees with a tree of a likely size, and the width takes over where it does not.
+/// agrees with a tree of a likely size, and the width takes over where it does not. Of a foot out
+/// of sight it is only known that the tree stands nearer than where the sight ends.
 class RangePosterior {
  public:
   RangePosterior(double height, const Search& search);

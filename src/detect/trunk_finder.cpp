@@ -119,6 +119,7 @@ void TrunkFinder::look_again(const PanoramaView& panorama, Sight sight) {
   trunk.centre_sigma = width * std::exp(judgement.log_sigma[0]);
   trunk.width_sigma = std::exp(judgement.log_sigma[1]);
   trunk.foot_sigma = unit * std::exp(judgement.log_sigma[2]);
+  trunk.cut = trunk.shape.foot + trunk.foot_sigma + Bands::kRows > last_row(trunk.shape.centre());
   trunks_.push_back(trunk);
 }
 

@@ -18,6 +18,7 @@ struct Trunk {
   float centre_sigma = 0;  ///< columns
   float width_sigma = 0;   ///< of the logarithm
   float foot_sigma = 0;    ///< rows
+  bool cut = false;        ///< it goes on below what the camera sees: its foot is out of sight
 };
 
 /// Candidates, their refinement and judgement.
@@ -36,6 +37,7 @@ class TrunkFinder {
   int other_feet(const TrunkShape& shape, std::array<float, EdgeFitter::kOtherFeet>& feet) const {
     return fitter_.other_feet(bands_, shape, feet);
   }
+  float last_row(float column) const { return fitter_.last_row(column); }
   void refine(TrunkShape& shape, EdgeFit& fit) const { fitter_.refine(bands_, shape, fit); }
   /// False, and nothing read, when the outline leads farther out of the panorama than Bands
   /// goes.

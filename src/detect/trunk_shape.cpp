@@ -76,7 +76,6 @@ EdgeFitter::EdgeFitter(const DetectorSetup& setup)
       horizon_band_(
           static_cast<int>(std::lround((setup.panorama.horizon_row() + 0.5) / Bands::kRows))),
       horizon_(static_cast<float>(setup.panorama.horizon_row() + 0.5)),
-      lowest_row_(static_cast<float>(setup.panorama.rows)),
       farthest_foot_(static_cast<float>(setup.height * setup.panorama.focal() /
                                         (1.1 * setup.search.range.high))),
       level_foot_{setup.height / setup.search.diameter.high,
@@ -85,7 +84,9 @@ EdgeFitter::EdgeFitter(const DetectorSetup& setup)
   for (int x = -margin_; x < width_ + margin_; ++x) {
     const int column =
         setup.panorama.wraps() ? ((x % width_) + width_) % width_ : std::clamp(x, 0, width_ - 1);
-    first_seen_.push_back((setup.seen.columns[column].first + Bands::kRows - 1) / Bands::kRows);
+    const SeenRows& seen = setup.seen.columns[column];
+    first_seen_.push_back((seen.first + Bands::kRows - 1) / Bands::kRows);
+    last_seen_.push_back(seen.empty() ? setup.panorama.rows : seen.last);
   }
 }
 
@@ -98,6 +99,11 @@ int EdgeFitter::first_band(float left, float right) const {
   int first = 0;
   for (int x = from; x <= to; x += step) first = std::max(first, first_seen_[x]);
   return first;
+}
+
+float EdgeFitter::last_row(float column) const {
+  const int at = static_cast<int>(std::floor(column)) + margin_;
+  return static_cast<float>(last_seen_[std::clamp(at, 0, width_ + 2 * margin_ - 1)]);
 }
 
 EdgeBands EdgeFitter::along(const Bands& bands, Extent extent, float foot, int flank) const {
@@ -245,12 +251,16 @@ int EdgeFitter::add_level_feet(const TrunkShape& shape, std::array<float, kOther
   const float high = std::max(static_cast<float>(level_foot_.low) * width, farthest_foot_);
   const float low = static_cast<float>(level_foot_.high) * width;
   const float reach = std::max({kFootReach, 0.6F * width, (low - high) / (2 * kLevelFeet)});
-  const float lowest = std::min(horizon_ + low, lowest_row_);
-  for (float row = horizon_ + high + reach; row < lowest && count < kOtherFeet; row += 2 * reach) {
+  const float last = last_row(shape.centre());
+  const auto offer = [&](float row) {
     const auto near = [&](float other) { return std::abs(row - other) < reach; };
-    if (!near(shape.foot) && std::none_of(feet.begin(), feet.begin() + others, near))
+    if (count < kOtherFeet && !near(shape.foot) &&
+        std::none_of(feet.begin(), feet.begin() + others, near))
       feet[count++] = row;
-  }
+  };
+  if (horizon_ + low > last) offer(last);
+  for (float row = horizon_ + high + reach; row < std::min(horizon_ + low, last); row += 2 * reach)
+    offer(row);
   return count;
 }
 

@@ -57,6 +57,10 @@ class EdgeFitter {
   /// The first band that is seen in all columns from `left` to `right`.
   int first_band(float left, float right) const;
 
+  /// The row where the camera's sight of this column ends below: a trunk that reaches it stands
+  /// farther down.
+  float last_row(float column) const;
+
  private:
   struct Extent {
     int first = 0, last = 0;  // bands
@@ -74,11 +78,12 @@ class EdgeFitter {
   void judge(const EdgeBands& bands, const TrunkShape& shape, EdgeFit& fit) const;
 
   int width_, horizon_band_;
-  float horizon_, lowest_row_;   // rows
+  float horizon_;                // row
   float farthest_foot_;          // of a searched tree on level ground: rows below the horizon
   Bounds level_foot_;            // of searched trees there: rows below the horizon per column
   int margin_;                   // columns before the first and after the last one
   std::vector<int> first_seen_;  // band, for each column and those of the margins
+  std::vector<int> last_seen_;   // row, likewise
 };
 
 }  // namespace bole

@@ -106,7 +106,7 @@ class Dump {
     const double width = trunk.angular_width * focal_;
     const double foot = row_of(trunk);
     if (trunk.visible < 0.5F || width < 3.5 * scale_ || trunk.range < 0.7F ||
-        trunk.range > 1.2 * search_.range.high || foot > frame_.geometry.rows)
+        trunk.range > 1.2 * search_.range.high)
       return;
     const double middle = frame_.geometry.column_of_bearing(trunk.bearing) + 0.5;
     if (middle > frame_.geometry.width) return;
@@ -169,8 +169,11 @@ class Dump {
     std::fwrite(features.data(), sizeof(float), features.size(), out_);
   }
 
+  // Of the foot, or of where the camera's sight of the trunk ends.
   double row_of(const TrunkTruth& trunk) const {
-    return frame_.geometry.row_of_tangent(trunk.foot_tangent) + 0.5;
+    const double column = frame_.geometry.column_of_bearing(trunk.bearing) + 0.5;
+    return std::min<double>(frame_.geometry.row_of_tangent(trunk.foot_tangent) + 0.5,
+                            finder_.last_row(static_cast<float>(column)));
   }
 
   // A shape is of a trunk when its middle, width and foot are near enough for the network to mend;

@@ -61,6 +61,20 @@ TEST(RangePosterior, DoubtsAFootWhereNoTreeOfThatWidthCanStand) {
   EXPECT_LT(posterior.estimate(sight).searched, 0.3);
 }
 
+TEST(RangePosterior, KnowsOfAFootOutOfSightOnlyThatTheTreeIsNear) {
+  const RangePosterior posterior(kHeight, kNear);
+  // The sight ends where level ground is 2.4 m away; the trunk is as wide as 0.35 m at 1.3 m.
+  TrunkSight sight = upright(1.3, 0.35);
+  sight.down = 0.5;
+  const double believed = posterior.estimate(sight).range;
+  sight.cut = true;
+  const RangeEstimate estimate = posterior.estimate(sight);
+  EXPECT_LT(estimate.range, believed - 0.3);
+  EXPECT_NEAR(estimate.range, 1.3, estimate.sigma);
+  EXPECT_GT(estimate.sigma, 0.1 * estimate.range);
+  EXPECT_GT(estimate.searched, 0.7);
+}
+
 TEST(RangePosterior, IsLessSureOfARangeWhoseFootIsLessSure) {
   const RangePosterior posterior(kHeight, kNear);
   TrunkSight sight = upright(4, 0.4);
