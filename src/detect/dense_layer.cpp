@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+// Vectors of scalable length are left out: they cannot stand in arrays.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "detect/dense_layer.cpp"
 #include <hwy/foreach_target.h>
