@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kMemory = 8;    // seconds in which a sighting's weight falls to 1 / e
 constexpr double kDoubt = 0.25;  // sightings
-constexpr double kShift = 0.52, kNow = 0.68, kBefore = 0.51;
+constexpr double kShift = 0.35, kNow = 0.6, kBefore = 0.56;
 
 double log_odds(double probability) {
   constexpr double kCertain = 1e-4;

@@ -9,9 +9,11 @@
 namespace bole {
 namespace {
 
-constexpr double kForgetAfter = 5.0;  // seconds a tree may stay unseen and keep its id
+// Seconds a tree may stay unseen and keep its id: the longer, the oftener it was seen.
+constexpr double kForgetAfter = 0.5, kForgetAfterASighting = 0.5, kForgetAtLast = 5.0;
 constexpr std::size_t kMostTracks = 256;
 constexpr double kGate = 30.0;        // misfit at which a sighting is no more of a track
+constexpr double kAsideGate = 12.0;   // the part of that across the line of sight
 constexpr double kWidthSpread = 0.2;  // of log angular width between two sightings of one tree
 constexpr double kPartlySeen = 8.0;   // most that a wrong width costs: half a trunk may be lit
 constexpr double kPartOfWidth = 0.3;  // that its middle is off by then
@@ -105,8 +107,9 @@ double Tracker::cost_of(const Tree& tree, const Track& track, const MotionEstima
                         squared(motion.turn_sigma) + shift / squared(range);
   const double along = expected.range_variance + squared(kPartOfRange * range) + shift;
   const double shape = ratio > 0 ? squared(ratio) : std::min(squared(ratio), kPartlySeen);
-  const double misfit = squared(turn) / across + squared(step) / along + shape;
-  return misfit > kGate ? Assignment::kForbidden : misfit + track.unseen();
+  const double aside = squared(turn) / across;
+  const double misfit = aside + squared(step) / along + shape;
+  return aside > kAsideGate || misfit > kGate ? Assignment::kForbidden : misfit + track.unseen();
 }
 
 // Pairs and motion depend on each other: pair with the slack of the prior, estimate, pair anew with
@@ -181,7 +184,10 @@ void Tracker::update(std::span<Tree> trees, double elapsed,
     }
     if (scores_ == Scores::ranks) trees[i].score = score;
   }
-  std::erase_if(tracks_, [](const Track& track) { return track.unseen() > kForgetAfter; });
+  std::erase_if(tracks_, [](const Track& track) {
+    return track.unseen() >
+           std::min(kForgetAtLast, kForgetAfter + kForgetAfterASighting * track.sightings());
+  });
   if (tracks_.size() > kMostTracks) {  // the longest unseen go first
     std::ranges::nth_element(tracks_, tracks_.begin() + kMostTracks, {}, &Track::unseen);
     tracks_.erase(tracks_.begin() + kMostTracks, tracks_.end());
