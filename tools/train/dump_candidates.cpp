@@ -5,6 +5,7 @@
 // number, label (1 trunk, 0 none), shifts to the truth (see Judgement), weight, then the features.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -39,14 +40,32 @@ PanoramaGeometry misjudged(PanoramaGeometry geometry, simulate::Random& random) 
   return geometry;
 }
 
+// The same wood in another light: another tone curve, haze, grain.
+TrainingFrame in_another_light(TrainingFrame frame, int number) {
+  simulate::Random random(static_cast<std::uint64_t>(number), 42);
+  const float gamma = std::exp(0.35F * random.normal()), gain = random.uniform(0.6F, 1.2F);
+  const float haze = random.chance(0.4F) ? random.uniform(0.1F, 0.7F) : 0;
+  const float haze_level = random.uniform(60, 220), grain = random.uniform(0, 5);
+  std::array<float, 256> tone;
+  for (int level = 0; level < 256; ++level) {
+    const float clear = 255 * gain * std::pow(static_cast<float>(level) / 255, gamma);
+    tone[level] = (1 - haze) * clear + haze * haze_level;
+  }
+  for (std::uint8_t& pixel : frame.pixels) {
+    const float value = tone[pixel] + grain * random.normal();
+    pixel = static_cast<std::uint8_t>(std::clamp(value, 0.0F, 255.0F));
+  }
+  return frame;
+}
+
 class Dump {
  public:
-  Dump(const TrainingFrame& frame, int number, bool second_looks, std::FILE* out)
+  Dump(const TrainingFrame& frame, int number, int light, bool second_looks, std::FILE* out)
       : frame_(frame),
         number_(number),
         second_looks_(second_looks),
         out_(out),
-        random_(static_cast<std::uint64_t>(number), 41),
+        random_(static_cast<std::uint64_t>(number), 43 + static_cast<std::uint32_t>(light)),
         focal_(frame.geometry.focal()),
         scale_(focal_ / kReferenceFocal),
         // Near trunks only, or far ones as well.
@@ -235,7 +254,10 @@ int main(int count, char** arguments) {
   for (int i = 3; i < count; ++i) {
     const std::filesystem::path file = arguments[i];
     const auto frame = bole::train::TrainingFrame::load(file);
-    bole::train::Dump(frame, std::stoi(file.stem().string()), second_looks, out).run();
+    const int number = std::stoi(file.stem().string());
+    bole::train::Dump(frame, number, 0, second_looks, out).run();
+    const auto lit = bole::train::in_another_light(frame, number);
+    bole::train::Dump(lit, number, 1, second_looks, out).run();
   }
   return std::fclose(out) == 0 ? 0 : 1;
 }

@@ -33,12 +33,16 @@ LIMIT = 4.0  # of a standardised feature
 MOST_WEIGHT = 8  # of a sample: it stands for others that were not kept
 SHIFTS_WEIGHT = 0.12  # of their likelihood beside the logit's
 BRIGHT_WEIGHT = 2.5  # of bright trunks: they are the fewer, but as good to run into
-EPOCHS, LAST_EPOCHS, BATCH, RATE, DECAY, NOISE = 10, 2, 2048, 3e-3, 1e-4, 0.15
+EPOCHS, LAST_EPOCHS, BATCH, RATE, DECAY, NOISE = 8, 1, 2048, 3e-3, 1e-4, 0.1
 
 
 def load(paths):
-    rows = np.concatenate([np.fromfile(p, np.float32).reshape(-1, HEAD + FEATURES) for p in paths])
-    return rows[:, :HEAD], rows[:, HEAD:]
+    heads, features = [], []
+    for path in paths:
+        rows = np.fromfile(path, np.float32).reshape(-1, HEAD + FEATURES)
+        heads.append(rows[:, :HEAD].copy())
+        features.append(rows[:, HEAD:].astype(np.float16))  # memory is what runs out
+    return np.concatenate(heads), np.concatenate(features)
 
 
 def mirrored(head, x):
@@ -81,10 +85,11 @@ class Standardised:
     """Features as the network sees them."""
 
     def __init__(self, x):
+        x = x.astype(np.float32)
         self.mean, self.scale = x.mean(0), 1 / (x.std(0) + 1e-3)
 
     def __call__(self, x):
-        parts = np.array_split(x, 1 + len(x) // 65536)  # halves of floats: memory is what runs out
+        parts = np.array_split(x, 1 + len(x) // 65536)
         return np.concatenate([((part - self.mean) * self.scale).clip(-LIMIT, LIMIT)
                                .astype(np.float16) for part in parts])
 
