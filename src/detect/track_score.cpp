@@ -6,9 +6,9 @@
 namespace bole {
 namespace {
 
-constexpr double kMemory = 4;    // seconds in which a sighting's weight falls to 1 / e
+constexpr double kMemory = 2;    // seconds in which a sighting's weight falls to 1 / e
 constexpr double kDoubt = 0.25;  // sightings
-constexpr double kShift = 0.29, kNow = 0.94, kBefore = 0.85;
+constexpr double kShift = 0.25, kNow = 0.99, kBefore = 0.78;
 
 double log_odds(double probability) {
   constexpr double kCertain = 1e-4;
