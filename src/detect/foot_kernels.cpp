@@ -16,7 +16,7 @@ namespace {
 
 // What is added before a truncation, so that it rounds down.
 constexpr float kFar = 16384;
-constexpr int kLines = FootLines::kLines, kStrips = FootLines::kStrips;
+constexpr int kLines = FootLines::kLines, kMiddle = kLines / 2, kStrips = FootLines::kStrips;
 
 // The rows that the lines lie between: each once where lines share them, else two by two.
 struct FootRows {
@@ -70,7 +70,7 @@ HWY_INLINE void FindRows(const FootPlace& place, int rows, LineRows& lines, Foot
   const float spacing = std::max(1.0F, 0.5F * place.unit);
   const auto half = hn::Set(d, 0.5F);
   for (int j = 0; j < kLines; j += lanes) {
-    const auto line = hn::Add(hn::Iota(d, static_cast<float>(j - kLines / 2)), half);
+    const auto line = hn::Add(hn::Iota(d, static_cast<float>(j - kMiddle)), half);
     const auto at =
         hn::Sub(hn::Add(hn::Set(d, place.row), hn::Mul(line, hn::Set(d, place.unit))), half);
     const auto high = spacing > 1 ? hn::Sub(at, hn::Set(d, 0.5F * spacing)) : hn::Floor(at);
@@ -251,7 +251,7 @@ void read_foot_lines_plain(const PanoramaView& panorama, bool wraps, const float
   };
   const float spacing = std::max(1.0F, 0.5F * place.unit);
   for (int j = 0; j < kLines; ++j) {
-    const float line = place.row + (static_cast<float>(j - kLines / 2) + 0.5F) * place.unit - 0.5F;
+    const float line = place.row + (static_cast<float>(j - kMiddle) + 0.5F) * place.unit - 0.5F;
     const float high = spacing > 1 ? line - 0.5F * spacing : std::floor(line);
     const float low_weight = spacing > 1 ? 0.5F : line - high;
     for (int k = 0; k < kStrips; ++k) lines.at[k][j] = 0;

@@ -80,15 +80,18 @@ HWY_INLINE void FindColumns(const CellColumns& columns, GridBuffers& buffers) {
 // One by one: gathering them in vectors takes longer.
 HWY_INLINE void Gather(const CellColumns& columns, GridBuffers& buffers) {
   const std::uint16_t* sums = columns.sums;
-  for (int band = 0; band < columns.bands; ++band, sums += columns.pitch)
+  for (int band = 0; band < columns.bands; ++band, sums += columns.pitch) {
     for (int i = 0; i < kBorders; ++i)
       std::memcpy(&buffers.pairs[band][i], sums + buffers.columns[band][i], sizeof(std::int32_t));
+  }
   if (!columns.coarse) return;
   const std::int32_t* coarse = columns.coarse;
-  for (int band = 0; band < columns.bands; ++band, coarse += columns.coarse_pitch)
-    for (int i = 0; i < kBorders; ++i)
+  for (int band = 0; band < columns.bands; ++band, coarse += columns.coarse_pitch) {
+    for (int i = 0; i < kBorders; ++i) {
       buffers.before[band][i] =
           coarse[(buffers.columns[band][i] + columns.margin) / Bands::kCoarse];
+    }
+  }
 }
 
 // kCellParts times the sum to each border; modulo 2^20 where only the sums modulo 2^16 are known.

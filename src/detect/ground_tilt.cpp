@@ -94,9 +94,10 @@ GroundTilt TiltEstimator::estimate(std::span<const TiltWitness> witnesses) {
   for (const TiltWitness& witness : witnesses) ready_.push_back(made_ready(witness));
   const auto likelihood = [&](const GroundTilt& ground, const GroundTilt& camera) {
     double sum = 0;
-    for (const Ready& w : ready_)
+    for (const Ready& w : ready_) {
       sum +=
           w.weight * (feet(w, ground) + lean(w.lean - camera.lean(w.cos_bearing, w.sin_bearing)));
+    }
     return sum;
   };
   const auto tilted = [&](const GroundTilt& t) {

@@ -205,9 +205,10 @@ bool Templates::has_twin(const Candidate& c) const {
     return c.dark == k.dark && shift < tolerance && std::abs(c.width - k.width) < 2 * tolerance &&
            std::abs(c.foot - k.foot) < std::max(8.0F, 0.35F * c.width);
   };
-  for (int part = part_of(centre - near); part <= part_of(centre + near); ++part)
+  for (int part = part_of(centre - near); part <= part_of(centre + near); ++part) {
     for (int k = latest_in_part_[(part + kParts) % kParts]; k >= 0; k = earlier_in_part_[k])
       if (is_twin(kept_[k])) return true;
+  }
   return false;
 }
 

@@ -65,9 +65,10 @@ float FeatureReader::read_grid(const Bands& bands, const TrunkShape& shape, int 
                       .lean = shape.slope() * Bands::kRows};
   for (int i = 0; i < kGridLanes; ++i) columns.borders[i] = kBorders[std::min(i, F::kAcross)] * w;
   const float sign = shape.dark ? 1.0F : -1.0F;
-  for (int i = 0; i < F::kAcross; ++i)
+  for (int i = 0; i < F::kAcross; ++i) {
     columns.factors[i] =
         sign / (float{Bands::kScale * kCellParts} * (kBorders[i + 1] - kBorders[i]) * w);
+  }
 
   std::array<CellRows, F::kHeights> rows;
   const float bottom = static_cast<float>(last * Bands::kRows),

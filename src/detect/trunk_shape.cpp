@@ -259,8 +259,10 @@ int EdgeFitter::add_level_feet(const TrunkShape& shape, std::array<float, kOther
       feet[count++] = row;
   };
   if (horizon_ + low > last) offer(last);
-  for (float row = horizon_ + high + reach; row < std::min(horizon_ + low, last); row += 2 * reach)
-    offer(row);
+  for (int i = 0; i < kLevelFeet; ++i) {
+    const float row = horizon_ + high + static_cast<float>(2 * i + 1) * reach;
+    if (row < std::min(horizon_ + low, last)) offer(row);
+  }
   return count;
 }
 
