@@ -101,15 +101,15 @@ Tree BoleDetector::tree_of(const Trunk& trunk, const GroundTilt& tilt) const {
   const double focal = panorama_.focal();
   const double bearing = panorama_.bearing_of_column(shape.centre() - 0.5);
   const TrunkSight seen = sight_of(trunk);
+  const double raised = tilt.raise(bearing);
   TrunkSight level = seen;
-  level.down += tilt.raise(bearing);
+  level.down += raised;
   const RangeEstimate place = range_.estimate(level);
   Tree tree;
   if (place.searched <= 0) return tree;
   const double s = std::sin(seen.angular_width / 2), diameter = 2 * place.range * s;
   // Of a foot out of sight, where it must be.
-  const double down =
-      seen.cut ? height_ / (place.range * (1 - s)) - tilt.raise(bearing) : seen.down;
+  const double down = seen.cut ? height_ / (place.range * (1 - s)) - raised : seen.down;
   tree.bearing = static_cast<float>(bearing);
   tree.range = static_cast<float>(place.range);
   tree.diameter = static_cast<float>(diameter);

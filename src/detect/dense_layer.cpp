@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "detect/rounding.h"
+
 // Vectors of scalable length are left out: they cannot stand in arrays.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
@@ -16,8 +18,6 @@ namespace bole {
 namespace {
 
 constexpr float kUnit = 1.0F / (float{kInputUnits} * float{kWeightUnits});
-// What is added before a truncation, so that it rounds to the nearest whole number.
-constexpr float kFar = 16384;
 static_assert(kMostInput * float{kInputUnits} < kFar);
 
 }  // namespace

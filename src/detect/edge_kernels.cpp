@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "detect/rounding.h"
+
 // Vectors of scalable length are left out: they cannot stand in arrays.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
@@ -14,9 +16,6 @@
 #define BOLE_DETECT_EDGE_KERNELS_ONCE
 namespace bole {
 namespace {
-
-// What is added before a truncation, so that it rounds to the nearest whole number.
-constexpr float kFar = 16384;
 
 // Columns nearest to a line, band by band.
 struct NearestColumns {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "detect/rounding.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "detect/foot_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -14,8 +16,6 @@
 namespace bole {
 namespace {
 
-// What is added before a truncation, so that it rounds down.
-constexpr float kFar = 16384;
 constexpr int kLines = FootLines::kLines, kMiddle = kLines / 2, kStrips = FootLines::kStrips;
 
 // The rows that the lines lie between: each once where lines share them, else two by two.

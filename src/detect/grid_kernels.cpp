@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "detect/bands.h"
+#include "detect/rounding.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "detect/grid_kernels.cpp"
@@ -16,8 +17,6 @@
 namespace bole {
 namespace {
 
-// What is added before a truncation, so that it rounds down.
-constexpr float kFar = 16384;
 constexpr int kBorders = kGridAcross + 1;
 
 // The sum to a column, not modulo 2^16.

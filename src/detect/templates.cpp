@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "detect/rounding.h"
 #include "detect/template_kernels.h"
 #include "geometry/ground.h"
 
@@ -18,7 +19,7 @@ constexpr int kWidestFlank = 28;  // columns
 constexpr double kSlope = 0.30;   // rising ground shifts feet by up to this tangent
 
 // To the nearest whole number; columns stay far from the limits.
-int rounded(double x) { return static_cast<int>(x + 16384.5) - 16384; }
+int rounded(double x) { return static_cast<int>(x + (kFar + 0.5)) - static_cast<int>(kFar); }
 
 // How near the centres of twins are at most, by the width of the narrower one.
 float near_twin(float width) { return std::max(1.5F, 0.15F * width); }

@@ -6,12 +6,11 @@
 namespace bole {
 namespace {
 
-constexpr float kWorthASecondLook = -3.0F;  // logit
-constexpr float kWorthOtherFeet = -6.0F;    // logit: with a wrong foot a trunk looks like none
-constexpr float kWorthAnswering = -3.5F;    // logit
-constexpr float kFarBetter = 3.0F;  // of two logits: the second look seldom turns them round
-constexpr float kSure = 4.0F;       // logit
-constexpr float kHopeless = -99;    // logit
+constexpr float kWorthOtherFeet = -6.0F;  // logit: with a wrong foot a trunk looks like none
+constexpr float kWorthAnswering = -3.5F;  // logit
+constexpr float kFarBetter = 3.0F;        // of two logits: the second look seldom turns them round
+constexpr float kSure = 4.0F;             // logit
+constexpr float kHopeless = -99;          // logit
 
 // The farther the search goes, the more trunks there are.
 int most_candidates(const Search& search) {

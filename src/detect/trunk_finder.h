@@ -24,6 +24,8 @@ struct Trunk {
 /// Candidates, their refinement and judgement.
 class TrunkFinder {
  public:
+  static constexpr float kWorthASecondLook = -3;  ///< logit of a first look
+
   explicit TrunkFinder(const DetectorSetup& setup);
 
   /// Trunks that are not out of the question, most probable first; valid until the next call.

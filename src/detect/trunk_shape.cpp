@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "detect/edge_search.h"
+#include "detect/rounding.h"
 
 namespace bole {
 namespace {
@@ -24,7 +25,7 @@ float response(const std::uint16_t* sum, int x, int k) {
 }
 
 // To the nearest whole number; columns and rows stay far from the limits.
-int nearest(float x) { return static_cast<int>(x + 16384.5F) - 16384; }
+int nearest(float x) { return static_cast<int>(x + (kFar + 0.5F)) - static_cast<int>(kFar); }
 
 // The line along which an edge of contrast `sign` stands out most, at most `reach` columns from
 // `column` at the foot, so many bands below the first one.

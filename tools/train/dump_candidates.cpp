@@ -21,10 +21,9 @@ namespace bole::train {
 namespace {
 
 constexpr int kHead = 6;
-constexpr double kMostNegatives = 200;   // a frame; the others are drawn from, and weigh more
-constexpr float kWorthASecondLook = -3;  // logit, as in TrunkFinder
-constexpr double kNear = 1.35;           // of what a trunk's shape may be off: neither
-constexpr float kSecondLooks = 0.4F;     // share of them that is kept
+constexpr double kMostNegatives = 200;  // a frame; the others are drawn from, and weigh more
+constexpr double kNear = 1.35;          // of what a trunk's shape may be off: neither
+constexpr float kSecondLooks = 0.4F;    // share of them that is kept
 constexpr double kReferenceFocal = 1440 / 6.283185307;
 
 struct Label {
@@ -113,7 +112,7 @@ class Dump {
     TrunkFeatures::Values features;
     if (!second_looks_ || !finder_.read(frame_.view(), shape, fit, features)) return;
     const Judgement judgement = judge(features);
-    if (judgement.logit < kWorthASecondLook || !random_.chance(kSecondLooks)) return;
+    if (judgement.logit < TrunkFinder::kWorthASecondLook || !random_.chance(kSecondLooks)) return;
     shape = corrected(shape, judgement, focal_);
     if (!finder_.read(frame_.view(), shape, fit, features)) return;
     finder_.refine(shape, fit);

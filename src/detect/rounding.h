@@ -1,0 +1,10 @@
+#pragma once
+
+namespace bole {
+
+/// Added before a truncation, it makes that round down; with another half, to the nearest whole
+/// number. For columns, rows and units, which stay far from it on either side; the vector kernels
+/// and their plain loops round alike so.
+inline constexpr float kFar = 16384;
+
+}  // namespace bole
