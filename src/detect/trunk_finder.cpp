@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "detect/dense_layer.h"
+
 namespace bole {
 namespace {
 
@@ -28,6 +30,7 @@ TrunkFinder::TrunkFinder(const DetectorSetup& setup)
       fitter_(setup),
       reader_(setup) {
   sights_.reserve(most_candidates(setup.search));
+  others_.reserve(EdgeFitter::kOtherFeet * sights_.capacity());
   trunks_.reserve(3 * most_candidates(setup.search));
   kept_.reserve(3 * most_candidates(setup.search));
 }
@@ -66,27 +69,28 @@ std::span<Trunk> TrunkFinder::find(const PanoramaView& panorama) {
     if (fit(candidate, sight.trunk.shape, sight.trunk.fit)) sights_.push_back(sight);
   }
   judge(panorama, sights_);
-  std::erase_if(sights_, [](const Sight& s) { return s.judgement.logit < kWorthOtherFeet; });
-  std::sort(sights_.begin(), sights_.end(), [](const Sight& a, const Sight& b) {
-    return a.judgement.logit != b.judgement.logit ? a.judgement.logit > b.judgement.logit
-                                                  : a.trunk.shape.left < b.trunk.shape.left;
-  });
+  keep_best(sights_, kWorthOtherFeet);
   trunks_.clear();
-  for (const Sight& sight : sights_) {
-    if (explained(sight.trunk.shape, sight.judgement.logit + kFarBetter)) continue;
-    look_again(panorama, sight);
-    if (!explained(sight.trunk.shape, kSure)) look_at_other_feet(panorama, sight);
-  }
+  look_again(panorama, sights_);
+  look_at_other_feet(panorama);
   suppress();
   return kept_;
 }
 
+// Drops what a first look has found less than worth a thought, and sorts the others.
+void TrunkFinder::keep_best(std::vector<Sight>& sights, float least) {
+  std::erase_if(sights, [least](const Sight& s) { return s.judgement.logit < least; });
+  std::sort(sights.begin(), sights.end(), [](const Sight& a, const Sight& b) {
+    return a.judgement.logit != b.judgement.logit ? a.judgement.logit > b.judgement.logit
+                                                  : a.trunk.shape.left < b.trunk.shape.left;
+  });
+}
+
 // Some at a time: the network's weights are read once for all of them.
 void TrunkFinder::judge(const PanoramaView& panorama, std::span<Sight> sights) const {
-  constexpr std::size_t kAtOnce = 8;
-  std::array<TrunkFeatures::Values, kAtOnce> features;
-  std::array<Judgement, kAtOnce> judgements;
-  std::array<Sight*, kAtOnce> seen;
+  std::array<TrunkFeatures::Values, kLooksAtOnce> features;
+  std::array<Judgement, kLooksAtOnce> judgements;
+  std::array<Sight*, kLooksAtOnce> seen;
   std::size_t count = 0;
   const auto judge_seen = [&] {
     bole::judge(std::span(features).first(count), judgements);
@@ -97,21 +101,38 @@ void TrunkFinder::judge(const PanoramaView& panorama, std::span<Sight> sights) c
     sight.judgement = {.logit = kHopeless};
     if (!read(panorama, sight.trunk.shape, sight.trunk.fit, features[count])) continue;
     seen[count++] = &sight;
-    if (count == kAtOnce) judge_seen();
+    if (count == kLooksAtOnce) judge_seen();
   }
   judge_seen();
 }
 
-// A second look, from where the first one says that the trunk is.
-void TrunkFinder::look_again(const PanoramaView& panorama, Sight sight) {
-  if (sight.judgement.logit < kWorthASecondLook) return;
-  Trunk& trunk = sight.trunk;
-  trunk.shape = corrected(trunk.shape, sight.judgement, focal_);
-  if (!readable(trunk.shape)) return;
-  refine(trunk.shape, trunk.fit);
-  judge(panorama, std::span(&sight, 1));
+// Second looks, from where the first ones say that the trunks are; some at a time.
+void TrunkFinder::look_again(const PanoramaView& panorama, std::span<const Sight> sights) {
+  std::array<Sight, kLooksAtOnce> looks;
+  std::size_t count = 0;
+  const auto judge_looks = [&] {
+    const auto all = std::span(looks).first(count);
+    judge(panorama, all);
+    for (const Sight& sight : all) take(sight);
+    count = 0;
+  };
+  for (const Sight& sight : sights) {
+    if (sight.judgement.logit < kWorthASecondLook) break;
+    if (explained(sight.trunk.shape, sight.judgement.logit + kFarBetter)) continue;
+    Trunk& trunk = (looks[count] = sight).trunk;
+    trunk.shape = corrected(trunk.shape, sight.judgement, focal_);
+    if (!readable(trunk.shape)) continue;
+    refine(trunk.shape, trunk.fit);
+    if (++count == kLooksAtOnce) judge_looks();
+  }
+  judge_looks();
+}
+
+// Keeps what a second look does not rule out.
+void TrunkFinder::take(const Sight& sight) {
   const Judgement& judgement = sight.judgement;
   if (judgement.logit < kWorthAnswering || trunks_.size() == trunks_.capacity()) return;
+  Trunk trunk = sight.trunk;
   const float width = trunk.shape.width(), unit = foot_unit(trunk.shape, focal_);
   trunk.shape = corrected(trunk.shape, judgement, focal_);
   trunk.logit = judgement.logit;
@@ -122,20 +143,21 @@ void TrunkFinder::look_again(const PanoramaView& panorama, Sight sight) {
   trunks_.push_back(trunk);
 }
 
-void TrunkFinder::look_at_other_feet(const PanoramaView& panorama, const Sight& sight) {
-  std::array<float, EdgeFitter::kOtherFeet> feet;
-  const int count = other_feet(sight.trunk.shape, feet);
-  std::array<Sight, EdgeFitter::kOtherFeet> others;
-  for (int i = 0; i < count; ++i) {
-    others[i] = sight;
-    others[i].trunk.shape = ended_at(sight.trunk.shape, feet[i]);
+// What no sure trunk explains may be one that ends elsewhere.
+void TrunkFinder::look_at_other_feet(const PanoramaView& panorama) {
+  others_.clear();
+  for (const Sight& sight : sights_) {
+    if (explained(sight.trunk.shape, std::min(kSure, sight.judgement.logit + kFarBetter))) continue;
+    std::array<float, EdgeFitter::kOtherFeet> feet;
+    const int count = other_feet(sight.trunk.shape, feet);
+    for (int i = 0; i < count && others_.size() < others_.capacity(); ++i) {
+      others_.push_back(sight);
+      others_.back().trunk.shape = ended_at(sight.trunk.shape, feet[i]);
+    }
   }
-  const auto all = std::span(others).first(static_cast<std::size_t>(count));
-  judge(panorama, all);
-  for (const Sight& other : all) {
-    if (!explained(other.trunk.shape, other.judgement.logit + kFarBetter))
-      look_again(panorama, other);
-  }
+  judge(panorama, others_);
+  keep_best(others_, kWorthASecondLook);
+  look_again(panorama, others_);
 }
 
 // Whether a trunk of a higher logit explains the same pixels.

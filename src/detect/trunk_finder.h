@@ -54,8 +54,10 @@ class TrunkFinder {
     Judgement judgement;
   };
   void judge(const PanoramaView& panorama, std::span<Sight> sights) const;
-  void look_again(const PanoramaView& panorama, Sight sight);
-  void look_at_other_feet(const PanoramaView& panorama, const Sight& sight);
+  static void keep_best(std::vector<Sight>& sights, float least);
+  void look_again(const PanoramaView& panorama, std::span<const Sight> sights);
+  void take(const Sight& sight);
+  void look_at_other_feet(const PanoramaView& panorama);
   bool explained(const TrunkShape& shape, float logit) const;
   void suppress();
   bool same_pixels(const TrunkShape& a, const TrunkShape& b) const;
@@ -67,7 +69,7 @@ class TrunkFinder {
   Templates templates_;
   EdgeFitter fitter_;
   FeatureReader reader_;
-  std::vector<Sight> sights_;
+  std::vector<Sight> sights_, others_;  // first looks
   std::vector<Trunk> trunks_, kept_;
 };
 
