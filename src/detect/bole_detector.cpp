@@ -47,7 +47,7 @@ class BoleDetector final : public Detector {
     double seen = 0;
     for (const Trunk& trunk : trunks) {
       // Its place can only make it less probable.
-      if (probability(trunk.logit) < kHardly || trees_.size() == trees_.capacity()) break;
+      if (probability(trunk.logit) < kHardly || trees_.size() == trees_.capacity()) continue;
       trees_.push_back(tree_of(trunk, tilt));
       seen += trees_.back().score;
     }

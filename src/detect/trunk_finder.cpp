@@ -143,11 +143,12 @@ void TrunkFinder::take(const Sight& sight) {
   trunks_.push_back(trunk);
 }
 
-// What no sure trunk explains may be one that ends elsewhere.
+// What no sure trunk explains may be one that ends elsewhere: with a wrong foot a good candidate
+// looks poor, and what seems better about it may itself be explained away.
 void TrunkFinder::look_at_other_feet(const PanoramaView& panorama) {
   others_.clear();
   for (const Sight& sight : sights_) {
-    if (explained(sight.trunk.shape, std::min(kSure, sight.judgement.logit + kFarBetter))) continue;
+    if (explained(sight.trunk.shape, kSure)) continue;
     std::array<float, EdgeFitter::kOtherFeet> feet;
     const int count = other_feet(sight.trunk.shape, feet);
     for (int i = 0; i < count && others_.size() < others_.capacity(); ++i) {
@@ -184,9 +185,12 @@ bool TrunkFinder::same_pixels(const TrunkShape& a, const TrunkShape& b) const {
   return a.dark != b.dark && (std::abs(a0 - b1) < near || std::abs(a1 - b0) < near);
 }
 
+// Of two that are as likely the wider one stays: a lit half looks like a trunk, too.
 void TrunkFinder::suppress() {
-  std::sort(trunks_.begin(), trunks_.end(), [](const Trunk& a, const Trunk& b) {
-    return a.logit != b.logit ? a.logit > b.logit : a.shape.left < b.shape.left;
+  const auto rank = [](const Trunk& t) { return t.logit + std::log(t.shape.width()); };
+  std::sort(trunks_.begin(), trunks_.end(), [&](const Trunk& a, const Trunk& b) {
+    const float first = rank(a), second = rank(b);
+    return first != second ? first > second : a.shape.left < b.shape.left;
   });
   kept_.clear();
   for (const Trunk& trunk : trunks_) {

@@ -28,7 +28,8 @@ class TrunkFinder {
 
   explicit TrunkFinder(const DetectorSetup& setup);
 
-  /// Trunks that are not out of the question, most probable first; valid until the next call.
+  /// Trunks that are not out of the question, the better ones first, as to probability and width;
+  /// valid until the next call.
   std::span<Trunk> find(const PanoramaView& panorama);
 
   /// The steps of find, for the training of the network.
