@@ -18,6 +18,7 @@ constexpr std::array<float, F::kAcross + 1> kBorders = {
     -1.5F, -1.0F, -0.75F, -0.55F, -0.4F, -0.2F, 0.0F, 0.2F, 0.4F, 0.55F, 0.75F, 1.0F, 1.5F};
 constexpr float kReference = 1440 / 6.2831853F;  // the focal length that pixel limits are meant for
 constexpr float kLeastSpread = 0.06F;            // of log brightness
+constexpr int kSpread = 2;                       // which of the numbers is the grid's spread
 
 }  // namespace
 
@@ -123,14 +124,23 @@ void FeatureReader::read_foot(const PanoramaView& panorama, const TrunkShape& sh
 
 void FeatureReader::read(const Bands& bands, const PanoramaView& panorama, const TrunkShape& shape,
                          const EdgeFit& fit, int first_band, F::Values& out) const {
-  static_assert(F::kHeights == kGridHeights && F::kAcross == kGridAcross);
-  float* values = out.data();
-  const float spread = read_grid(bands, shape, first_band, values);
-  values += F::kHeights * F::kAcross;
-  float* const foot = values;
+  const RowLevels levels = read_but_foot(bands, shape, fit, first_band, out);
+  even_rows(levels, out.data());
+  const float spread = out[F::kGrid + F::kFoot + kSpread];
+  float* const foot = out.data() + F::kGrid;
   read_foot(panorama, shape, spread, foot);
-  values += F::kFootRows * F::kStrips;
+  out.back() = even_foot(std::max(spread, kLeastSpread), foot);
+}
 
+void FeatureReader::glance(const Bands& bands, const TrunkShape& shape, const EdgeFit& fit,
+                           int first_band, F::Values& out) const {
+  read_but_foot(bands, shape, fit, first_band, out);
+}
+
+RowLevels FeatureReader::read_but_foot(const Bands& bands, const TrunkShape& shape,
+                                       const EdgeFit& fit, int first_band, F::Values& out) const {
+  static_assert(F::kHeights == kGridHeights && F::kAcross == kGridAcross);
+  const float spread = read_grid(bands, shape, first_band, out.data());
   const auto f = static_cast<float>(focal_);
   const float w = shape.width();
   const float top = static_cast<float>(first_band * Bands::kRows);
@@ -155,8 +165,10 @@ void FeatureReader::read(const Bands& bands, const PanoramaView& panorama, const
       (shape.left_slope - shape.right_slope) * 20,
       shape.slope() * 20,
   };
-  values = std::copy(std::begin(numbers), std::end(numbers), values);
-  even_contrasts(std::max(spread, kLeastSpread), out.data(), foot, values);
+  static_assert(kSpread == 2);
+  std::copy(std::begin(numbers), std::end(numbers), out.data() + F::kGrid + F::kFoot);
+  return row_contrasts(std::max(spread, kLeastSpread), out.data(),
+                       out.data() + F::kGrid + F::kFoot + F::kNumbers);
 }
 
 }  // namespace bole

@@ -18,14 +18,19 @@ struct TrunkFeatures {
   static constexpr int kFootRows = 16;  ///< fine rows about the foot
   static constexpr int kStrips = 3;     ///< of each: left of the trunk, its core, right of it
   static constexpr int kNumbers = 19;
-  static constexpr int kRowNumbers = 7;  ///< of each row of cells: see even_contrasts
-  static constexpr int kRowContrasts = kRowNumbers * kHeights + kHeights - 1 + 1;
-  static constexpr int kCount = kHeights * kAcross + kFootRows * kStrips + kNumbers + kRowContrasts;
+  static constexpr int kRowNumbers = 7;  ///< of each row of cells: see row_contrasts
+  static constexpr int kRowContrasts = kRowNumbers * kHeights + kHeights - 1;
+
+  // In this order, then the log of the foot's contrast.
+  static constexpr int kGrid = kHeights * kAcross, kFoot = kFootRows * kStrips;
+  static constexpr int kCount = kGrid + kFoot + kNumbers + kRowContrasts + 1;
   using Values = std::array<float, kCount>;
 };
 
 /// The unit of a foot's shift: what the fine rows are apart.
 float foot_unit(const TrunkShape& shape, double focal);
+
+struct RowLevels;
 
 class FeatureReader {
  public:
@@ -33,8 +38,14 @@ class FeatureReader {
 
   void read(const Bands& bands, const PanoramaView& panorama, const TrunkShape& shape,
             const EdgeFit& fit, int first_band, TrunkFeatures::Values& out) const;
+  /// All but what is about the foot, which is left as it was; rows of cells are as strong in
+  /// contrast as they are.
+  void glance(const Bands& bands, const TrunkShape& shape, const EdgeFit& fit, int first_band,
+              TrunkFeatures::Values& out) const;
 
  private:
+  RowLevels read_but_foot(const Bands& bands, const TrunkShape& shape, const EdgeFit& fit,
+                          int first_band, TrunkFeatures::Values& out) const;
   float read_grid(const Bands& bands, const TrunkShape& shape, int first_band, float* out) const;
   void read_foot(const PanoramaView& panorama, const TrunkShape& shape, float spread,
                  float* out) const;

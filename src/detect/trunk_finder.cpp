@@ -8,7 +8,7 @@
 namespace bole {
 namespace {
 
-constexpr float kWorthOtherFeet = -6.0F;  // logit: with a wrong foot a trunk looks like none
+constexpr float kWorthOtherFeet = -5.0F;  // logit: with a wrong foot a trunk looks like none
 constexpr float kWorthAnswering = -3.5F;  // logit
 constexpr float kFarBetter = 3.0F;        // of two logits: the second look seldom turns them round
 constexpr float kSure = 4.0F;             // logit
@@ -60,6 +60,13 @@ bool TrunkFinder::read(const PanoramaView& panorama, const TrunkShape& shape, co
   return true;
 }
 
+bool TrunkFinder::glance(const TrunkShape& shape, const EdgeFit& fit,
+                         TrunkFeatures::Values& out) const {
+  if (!readable(shape)) return false;
+  reader_.glance(bands_, shape, fit, fitter_.first_band(shape.left, shape.right), out);
+  return true;
+}
+
 // Most candidates about a trunk are that trunk seen amiss: those that look best go first, and what
 // one of them explains far better is not looked at again.
 std::span<Trunk> TrunkFinder::find(const PanoramaView& panorama) {
@@ -68,7 +75,7 @@ std::span<Trunk> TrunkFinder::find(const PanoramaView& panorama) {
     Sight sight;
     if (fit(candidate, sight.trunk.shape, sight.trunk.fit)) sights_.push_back(sight);
   }
-  judge(panorama, sights_);
+  glance(sights_);
   keep_best(sights_, kWorthOtherFeet);
   trunks_.clear();
   look_again(panorama, sights_);
@@ -86,24 +93,45 @@ void TrunkFinder::keep_best(std::vector<Sight>& sights, float least) {
   });
 }
 
-// Some at a time: the network's weights are read once for all of them.
-void TrunkFinder::judge(const PanoramaView& panorama, std::span<Sight> sights) const {
+// Some at a time: a network's weights are read once for all of them.
+template <class Read, class Judge>
+void TrunkFinder::judge_all(std::span<Sight> sights, const Read& read, const Judge& judge) {
   std::array<TrunkFeatures::Values, kLooksAtOnce> features;
   std::array<Judgement, kLooksAtOnce> judgements;
   std::array<Sight*, kLooksAtOnce> seen;
   std::size_t count = 0;
   const auto judge_seen = [&] {
-    bole::judge(std::span(features).first(count), judgements);
+    judge(std::span(features).first(count), judgements);
     for (std::size_t i = 0; i < count; ++i) seen[i]->judgement = judgements[i];
     count = 0;
   };
   for (Sight& sight : sights) {
     sight.judgement = {.logit = kHopeless};
-    if (!read(panorama, sight.trunk.shape, sight.trunk.fit, features[count])) continue;
+    if (!read(sight.trunk, features[count])) continue;
     seen[count++] = &sight;
     if (count == kLooksAtOnce) judge_seen();
   }
   judge_seen();
+}
+
+void TrunkFinder::glance(std::span<Sight> sights) const {
+  judge_all(
+      sights,
+      [&](const Trunk& trunk, TrunkFeatures::Values& features) {
+        return glance(trunk.shape, trunk.fit, features);
+      },
+      judge_at_a_glance);
+}
+
+void TrunkFinder::look(const PanoramaView& panorama, std::span<Sight> sights) const {
+  judge_all(
+      sights,
+      [&](const Trunk& trunk, TrunkFeatures::Values& features) {
+        return read(panorama, trunk.shape, trunk.fit, features);
+      },
+      [](std::span<const TrunkFeatures::Values> features, std::span<Judgement> judgements) {
+        judge(features, judgements);
+      });
 }
 
 // Second looks, from where the first ones say that the trunks are; some at a time.
@@ -112,7 +140,7 @@ void TrunkFinder::look_again(const PanoramaView& panorama, std::span<const Sight
   std::size_t count = 0;
   const auto judge_looks = [&] {
     const auto all = std::span(looks).first(count);
-    judge(panorama, all);
+    look(panorama, all);
     for (const Sight& sight : all) take(sight);
     count = 0;
   };
@@ -156,7 +184,7 @@ void TrunkFinder::look_at_other_feet(const PanoramaView& panorama) {
       others_.back().trunk.shape = ended_at(sight.trunk.shape, feet[i]);
     }
   }
-  judge(panorama, others_);
+  glance(others_);
   keep_best(others_, kWorthASecondLook);
   look_again(panorama, others_);
 }

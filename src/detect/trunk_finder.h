@@ -46,6 +46,9 @@ class TrunkFinder {
   /// goes.
   [[nodiscard]] bool read(const PanoramaView& panorama, const TrunkShape& shape, const EdgeFit& fit,
                           TrunkFeatures::Values& out) const;
+  /// The same of what judge_at_a_glance is shown.
+  [[nodiscard]] bool glance(const TrunkShape& shape, const EdgeFit& fit,
+                            TrunkFeatures::Values& out) const;
 
  private:
   bool readable(const TrunkShape& shape) const;
@@ -54,7 +57,10 @@ class TrunkFinder {
     Trunk trunk;
     Judgement judgement;
   };
-  void judge(const PanoramaView& panorama, std::span<Sight> sights) const;
+  template <class Read, class Judge>
+  static void judge_all(std::span<Sight> sights, const Read& read, const Judge& judge);
+  void glance(std::span<Sight> sights) const;
+  void look(const PanoramaView& panorama, std::span<Sight> sights) const;
   static void keep_best(std::vector<Sight>& sights, float least);
   void look_again(const PanoramaView& panorama, std::span<const Sight> sights);
   void take(const Sight& sight);

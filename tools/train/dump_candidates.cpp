@@ -110,8 +110,9 @@ class Dump {
 
   void put_second_look(TrunkShape shape, EdgeFit fit) {
     TrunkFeatures::Values features;
-    if (!second_looks_ || !finder_.read(frame_.view(), shape, fit, features)) return;
-    const Judgement judgement = judge(features);
+    if (!second_looks_ || !finder_.glance(shape, fit, features)) return;
+    Judgement judgement;
+    judge_at_a_glance(std::span(&features, 1), std::span(&judgement, 1));
     if (judgement.logit < TrunkFinder::kWorthASecondLook || !random_.chance(kSecondLooks)) return;
     shape = corrected(shape, judgement, focal_);
     if (!finder_.read(frame_.view(), shape, fit, features)) return;

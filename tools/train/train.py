@@ -1,17 +1,19 @@
 #!/usr/bin/env python3
-"""Trains the detector's network on what dump_candidates wrote.
+"""Trains the detector's networks on what dump_candidates wrote.
 
-usage: train.py --out src/detect/weights.inc [DUMP...]
+usage: train.py --out src/detect [--only weights|glance_weights] [DUMP...]
 
-Without a dump it writes a network that knows nothing, for changed features to be built with.
+Without a dump it writes networks that know nothing, for changed features to be built with.
 
-Two hidden layers of leaky units over the standardised features, and seven outputs: the logit of
+The one for a glance has one small layer and is shown all but what is about the foot. The other has
+two hidden layers of leaky units over the standardised features, and seven outputs: the logit of
 'this is a trunk', the shifts of middle, log width and foot that lead to it, and the logarithms of
 their standard deviations. Every sample is shown mirrored, too. Gaussian noise on the inputs keeps
 the network from leaning on details that only the simulator has; the last epochs go without, so that
 the deviations are those of clean inputs. Every eighth frame is held out and only reported on.
 """
 import argparse
+import pathlib
 
 import jax
 import jax.numpy as jnp
@@ -29,6 +31,10 @@ LEFT_RIGHT_NUMBERS = [(5, 6), (8, 9), (13, 14)]  # that change places in a mirro
 SIDEWAYS_NUMBERS = [18]  # that change sign in a mirror
 POLARITY_NUMBER = 3  # 1 dark, -1 bright
 HIDDEN, OUTPUTS, LEAK = (192, 48), 7, 0.05
+FOOT = slice(GRID, GRID + FOOT_ROWS * STRIPS)
+GLANCE_HIDDEN = (48,)
+SPREAD_NUMBER = 2  # of the grid, log brightness
+LEAST_SPREAD, LEAST_ROW_SPREAD = 0.06, 0.04  # see trunk_features.cpp, row_contrasts.cpp
 LIMIT = 4.0  # of a standardised feature
 MOST_WEIGHT = 8  # of a sample: it stands for others that were not kept
 SHIFTS_WEIGHT = 0.12  # of their likelihood beside the logit's
@@ -57,8 +63,20 @@ def mirrored(head, x):
     return head * np.float32([1, 1, -1, 1, 1, 1]), m
 
 
-def first_weights(random):
-    sizes = (FEATURES, *HIDDEN, OUTPUTS)
+def at_a_glance(x):
+    """What the network for a glance is shown: no foot, and rows of cells as they were before each
+    was made as strong in contrast as the others."""
+    x = x.astype(np.float32)
+    unit = np.maximum(x[:, FOOT.stop + SPREAD_NUMBER], LEAST_SPREAD)[:, None]
+    mean, log_spread = (x[:, ROWS + k * HEIGHTS:ROWS + (k + 1) * HEIGHTS] for k in (0, 1))
+    full = np.maximum(np.exp(log_spread), LEAST_ROW_SPREAD) / unit
+    grid = x[:, :GRID].reshape(-1, HEIGHTS, ACROSS) * full[:, :, None] + mean[:, :, None]
+    seen = np.concatenate([grid.reshape(-1, GRID), x[:, FOOT.stop:FEATURES - 1]], 1)
+    return seen.astype(np.float16)
+
+
+def first_weights(random, inputs, hidden):
+    sizes = (inputs, *hidden, OUTPUTS)
     layers = [(random.normal(0, np.sqrt(2 / n), (n, m)), np.zeros(m))
               for n, m in zip(sizes, sizes[1:])]
     return jax.tree.map(np.float32, layers)
@@ -103,8 +121,8 @@ def weighed(head, x):
     return head
 
 
-def train(head, z, random):
-    layers = first_weights(random)
+def train(head, z, hidden, random):
+    layers = first_weights(random, z.shape[1], hidden)
     steps = len(z) // BATCH
     rate = optax.warmup_cosine_decay_schedule(0, RATE, 200, (EPOCHS + LAST_EPOCHS) * steps, 1e-5)
     optimiser = optax.adamw(rate, weight_decay=DECAY)
@@ -146,46 +164,62 @@ def write(standardised, layers, path):
         rows = ",\n    ".join("{" + numbers(row) + "}" for row in values)
         return f"constexpr float {name}{sizes} = {{\n    {rows}}};\n"
 
-    (first, first_bias), (second, second_bias), (third, third_bias) = layers
+    units = ("kFirst", "kSecond")[:len(layers) - 1] + ("kOutput",)
+    sizes = ("kInputs", *units[:-1], "kOutputs")
+    counts = (len(standardised.mean), *(len(bias) for _, bias in layers))
     with open(path, "w") as out:
         out.write(f"""// Written by tools/train/train.py.
-namespace weights {{
-constexpr int kInputs = {FEATURES}, kFirst = {HIDDEN[0]}, kSecond = {HIDDEN[1]}, kOutputs = {OUTPUTS};
+namespace {path.stem} {{
+constexpr int {", ".join(f"{size} = {count}" for size, count in zip(sizes, counts))};
 constexpr float kLimit = {LIMIT}F;
 constexpr float kMean[kInputs] = {{{numbers(standardised.mean)}}};
 constexpr float kScale[kInputs] = {{{numbers(standardised.scale)}}};
-constexpr std::array<float, kFirst> kFirstBias = {{{numbers(first_bias)}}};
-constexpr std::array<float, kSecond> kSecondBias = {{{numbers(second_bias)}}};
-constexpr std::array<float, kOutputs> kOutputBias = {{{numbers(third_bias)}}};
 """)
-        out.write(matrix("kToFirst", "[kInputs][kFirst]", first))
-        out.write(matrix("kToSecond", "[kFirst][kSecond]", second))
-        out.write(matrix("kToOutput", "[kSecond][kOutputs]", third))
-        out.write("}  // namespace weights\n")
+        for unit, size, (_, bias) in zip(units, sizes[1:], layers):
+            out.write(f"constexpr std::array<float, {size}> {unit}Bias = {{{numbers(bias)}}};\n")
+        for unit, size, before, (values, _) in zip(units, sizes[1:], sizes, layers):
+            out.write(matrix(f"kTo{unit[1:]}", f"[{before}][{size}]", values))
+        out.write(f"}}  // namespace {path.stem}\n")
+
+
+def fit(head, x, shown, hidden, path):
+    """Trains a network on what it is `shown` of the features, says how good it is, writes its
+    weights."""
+    random = np.random.default_rng(0)
+    held_out = head[:, 0].astype(int) % 8 == 0
+    tested = head[held_out], x[held_out]
+    head, x = head[~held_out], x[~held_out]
+    standardised = Standardised(shown(np.concatenate([x[::8], mirrored(head[::8], x[::8])[1]])))
+    weighed_head = weighed(head, x)
+    z = standardised(shown(x))
+    twin_head, x = mirrored(weighed_head, x)
+    layers = train(np.concatenate([weighed_head, twin_head]),
+                   np.concatenate([z, standardised(shown(x))]), hidden, random)
+    report(layers, tested[0], standardised(shown(tested[1])))
+    write(standardised, layers, path)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", required=True)
+    parser.add_argument("--out", required=True, type=pathlib.Path,
+                        help="the folder of weights.inc and glance_weights.inc")
+    parser.add_argument("--only", choices=["weights", "glance_weights"])
     parser.add_argument("dumps", nargs="*")
     arguments = parser.parse_args()
-    random = np.random.default_rng(0)
-    if not arguments.dumps:
-        write(Standardised(np.zeros((1, FEATURES), np.float32)), first_weights(random), arguments.out)
-        return
-    head, x = load(arguments.dumps)
-    held_out = head[:, 0].astype(int) % 8 == 0
-    tested = head[held_out], x[held_out]
-    head, x = head[~held_out], x[~held_out]
-    standardised = Standardised(np.concatenate([x[::8], mirrored(head[::8], x[::8])[1]]))
-    weighed_head = weighed(head, x)
-    z = standardised(x)
-    twin_head, x = mirrored(weighed_head, x)
-    layers = train(np.concatenate([weighed_head, twin_head]), np.concatenate([z, standardised(x)]),
-                   random)
-    report(layers, tested[0], standardised(tested[1]))
-    write(standardised, layers, arguments.out)
+    networks = {"weights": (lambda x: x, HIDDEN), "glance_weights": (at_a_glance, GLANCE_HIDDEN)}
+    if arguments.only:
+        networks = {arguments.only: networks[arguments.only]}
+    if arguments.dumps:
+        head, x = load(arguments.dumps)
+    for name, (shown, hidden) in networks.items():
+        path = arguments.out / f"{name}.inc"
+        if arguments.dumps:
+            fit(head, x, shown, hidden, path)
+        else:
+            nothing = shown(np.zeros((1, FEATURES), np.float32))
+            layers = first_weights(np.random.default_rng(0), nothing.shape[1], hidden)
+            write(Standardised(nothing), layers, path)
 
 
 if __name__ == "__main__":

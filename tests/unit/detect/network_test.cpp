@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -10,19 +11,42 @@
 namespace bole {
 namespace {
 
-// The weights as they were trained: a change of them, or of how they are used, shows here.
-TEST(Network, JudgesAsTheTrainedWeightsSay) {
+TrunkFeatures::Values some_features() {
   TrunkFeatures::Values features;
   for (int i = 0; i < TrunkFeatures::kCount; ++i)
     features[i] = std::sin(0.37F * static_cast<float>(i * i % 101));
-  const Judgement now = judge(features);
+  return features;
+}
+
+void expect_golden(const char* name, const Judgement& now) {
   static_assert(sizeof(Judgement) == 7 * sizeof(float));
-  const auto bytes = golden("detect/judgement.bin", std::as_bytes(std::span(&now, 1)));
+  const auto bytes = golden(name, std::as_bytes(std::span(&now, 1)));
   ASSERT_EQ(bytes.size(), sizeof(Judgement));
   float was[7], is[7];
   std::memcpy(was, bytes.data(), sizeof was);
   std::memcpy(is, &now, sizeof is);
   for (int i = 0; i < 7; ++i) EXPECT_NEAR(is[i], was[i], 5e-3) << i;
+}
+
+Judgement glance(const TrunkFeatures::Values& features) {
+  Judgement judgement;
+  judge_at_a_glance(std::span(&features, 1), std::span(&judgement, 1));
+  return judgement;
+}
+
+// The weights as they were trained: a change of them, or of how they are used, shows here.
+TEST(Network, JudgesAsTheTrainedWeightsSay) {
+  expect_golden("detect/judgement.bin", judge(some_features()));
+  expect_golden("detect/glance.bin", glance(some_features()));
+}
+
+TEST(Network, DoesNotLookAtTheFootAtAGlance) {
+  TrunkFeatures::Values features = some_features();
+  const Judgement with_foot = glance(features);
+  std::fill_n(features.begin() + TrunkFeatures::kGrid, TrunkFeatures::kFoot, 9.0F);
+  features.back() = 9;
+  const Judgement without = glance(features);
+  EXPECT_EQ(std::memcmp(&with_foot, &without, sizeof(Judgement)), 0);
 }
 
 TEST(Network, ShiftsAShapeAsItSays) {

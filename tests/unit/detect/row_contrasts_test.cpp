@@ -18,7 +18,10 @@ struct Cells {
   std::array<float, std::size_t{F::kFootRows} * F::kStrips> foot{};
   std::array<float, F::kRowContrasts> numbers{};
 
-  void even(float unit = 1) { even_contrasts(unit, grid.data(), foot.data(), numbers.data()); }
+  void even(float unit = 1) {
+    even_rows(row_contrasts(unit, grid.data(), numbers.data()), grid.data());
+    even_foot(unit, foot.data());
+  }
   float* row(int h) { return grid.data() + h * F::kAcross; }
   float number(int which, int h) const { return numbers[which * F::kHeights + h]; }
 };
