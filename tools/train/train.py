@@ -8,9 +8,10 @@ Without a dump it writes networks that know nothing, for changed features to be 
 The one for a glance has one small layer and is shown all but what is about the foot. The other has
 two hidden layers of leaky units over the standardised features, and seven outputs: the logit of
 'this is a trunk', the shifts of middle, log width and foot that lead to it, and the logarithms of
-their standard deviations. Every sample is shown mirrored, too. Gaussian noise on the inputs keeps
-the network from leaning on details that only the simulator has; the last epochs go without, so that
-the deviations are those of clean inputs. Every eighth frame is held out and only reported on.
+their standard deviations. Samples are shown mirrored half of the time. Gaussian noise on the
+inputs keeps the network from leaning on details that only the simulator has; the last epochs go
+without, so that the deviations are those of clean inputs. Every eighth frame is held out and only
+reported on.
 """
 import argparse
 import pathlib
@@ -39,7 +40,7 @@ LIMIT = 4.0  # of a standardised feature
 MOST_WEIGHT = 8  # of a sample: it stands for others that were not kept
 SHIFTS_WEIGHT = 0.12  # of their likelihood beside the logit's
 BRIGHT_WEIGHT = 2.5  # of bright trunks: they are the fewer, but as good to run into
-EPOCHS, LAST_EPOCHS, BATCH, RATE, DECAY, NOISE = 8, 1, 2048, 3e-3, 1e-4, 0.1
+EPOCHS, LAST_EPOCHS, BATCH, RATE, DECAY, NOISE = 14, 2, 2048, 3e-3, 1e-4, 0.1
 
 
 def load(paths):
@@ -51,16 +52,19 @@ def load(paths):
     return np.concatenate(heads), np.concatenate(features)
 
 
-def mirrored(head, x):
-    m, n = x.copy(), GRID + FOOT_ROWS * STRIPS
-    m[:, :GRID] = x[:, :GRID].reshape(-1, HEIGHTS, ACROSS)[:, :, ::-1].reshape(-1, GRID)
-    m[:, GRID:n] = x[:, GRID:n].reshape(-1, FOOT_ROWS, STRIPS)[:, :, ::-1].reshape(-1, n - GRID)
+def mirror():
+    """Where each feature comes from in a mirror, and its sign there."""
+    source, sign = np.arange(FEATURES), np.ones(FEATURES, np.float32)
+    source[:GRID] = source[:GRID].reshape(HEIGHTS, ACROSS)[:, ::-1].ravel()
+    source[FOOT] = source[FOOT].reshape(FOOT_ROWS, STRIPS)[:, ::-1].ravel()
     for a, b in LEFT_RIGHT_NUMBERS:
-        m[:, n + a], m[:, n + b] = x[:, n + b], x[:, n + a]
-    for a in SIDEWAYS_NUMBERS:
-        m[:, n + a] *= -1
-    m[:, LEFT_EDGE], m[:, RIGHT_EDGE] = x[:, RIGHT_EDGE], x[:, LEFT_EDGE]
-    return head * np.float32([1, 1, -1, 1, 1, 1]), m
+        source[FOOT.stop + a], source[FOOT.stop + b] = FOOT.stop + b, FOOT.stop + a
+    source[LEFT_EDGE], source[RIGHT_EDGE] = source[RIGHT_EDGE].copy(), source[LEFT_EDGE].copy()
+    sign[[FOOT.stop + a for a in SIDEWAYS_NUMBERS]] = -1
+    return source, sign
+
+
+MIRRORED_HEAD = np.float32([1, 1, -1, 1, 1, 1])  # the centre's shift
 
 
 def at_a_glance(x):
@@ -73,6 +77,12 @@ def at_a_glance(x):
     grid = x[:, :GRID].reshape(-1, HEIGHTS, ACROSS) * full[:, :, None] + mean[:, :, None]
     seen = np.concatenate([grid.reshape(-1, GRID), x[:, FOOT.stop:FEATURES - 1]], 1)
     return seen.astype(np.float16)
+
+
+def mirror_at_a_glance():
+    source, sign = mirror()
+    shown = np.r_[:GRID, FOOT.stop:FEATURES - 1]
+    return np.searchsorted(shown, source[shown]), sign[shown]
 
 
 def first_weights(random, inputs, hidden):
@@ -102,8 +112,10 @@ def loss(layers, z, head):
 class Standardised:
     """Features as the network sees them."""
 
-    def __init__(self, x):
+    def __init__(self, x, mirror):
+        source, sign = mirror
         x = x.astype(np.float32)
+        x = np.concatenate([x, x[:, source] * sign])
         self.mean, self.scale = x.mean(0), 1 / (x.std(0) + 1e-3)
 
     def __call__(self, x):
@@ -121,7 +133,8 @@ def weighed(head, x):
     return head
 
 
-def train(head, z, hidden, random):
+def train(head, z, hidden, mirror, random):
+    source, sign = mirror
     layers = first_weights(random, z.shape[1], hidden)
     steps = len(z) // BATCH
     rate = optax.warmup_cosine_decay_schedule(0, RATE, 200, (EPOCHS + LAST_EPOCHS) * steps, 1e-5)
@@ -130,7 +143,12 @@ def train(head, z, hidden, random):
 
     @jax.jit
     def step(layers, state, z, head, key, noise):
-        z = z.astype(jnp.float32) + noise * jax.random.normal(key, z.shape)
+        for_noise, for_side = jax.random.split(key)
+        z = z.astype(jnp.float32)
+        turned = jax.random.bernoulli(for_side, 0.5, (len(z), 1))
+        z = jnp.where(turned, z[:, source] * sign, z)
+        z += noise * jax.random.normal(for_noise, z.shape)
+        head = jnp.where(turned, head * MIRRORED_HEAD, head)
         change, state = optimiser.update(jax.grad(loss)(layers, z, head), state, layers)
         return optax.apply_updates(layers, change), state
 
@@ -182,19 +200,15 @@ constexpr float kScale[kInputs] = {{{numbers(standardised.scale)}}};
         out.write(f"}}  // namespace {path.stem}\n")
 
 
-def fit(head, x, shown, hidden, path):
+def fit(head, x, shown, mirror, hidden, path):
     """Trains a network on what it is `shown` of the features, says how good it is, writes its
     weights."""
-    random = np.random.default_rng(0)
     held_out = head[:, 0].astype(int) % 8 == 0
     tested = head[held_out], x[held_out]
     head, x = head[~held_out], x[~held_out]
-    standardised = Standardised(shown(np.concatenate([x[::8], mirrored(head[::8], x[::8])[1]])))
-    weighed_head = weighed(head, x)
-    z = standardised(shown(x))
-    twin_head, x = mirrored(weighed_head, x)
-    layers = train(np.concatenate([weighed_head, twin_head]),
-                   np.concatenate([z, standardised(shown(x))]), hidden, random)
+    standardised = Standardised(shown(x[::8]), mirror)
+    layers = train(weighed(head, x), standardised(shown(x)), hidden, mirror,
+                   np.random.default_rng(0))
     report(layers, tested[0], standardised(shown(tested[1])))
     write(standardised, layers, path)
 
@@ -207,19 +221,20 @@ def main():
     parser.add_argument("--only", choices=["weights", "glance_weights"])
     parser.add_argument("dumps", nargs="*")
     arguments = parser.parse_args()
-    networks = {"weights": (lambda x: x, HIDDEN), "glance_weights": (at_a_glance, GLANCE_HIDDEN)}
+    networks = {"weights": (lambda x: x, mirror(), HIDDEN),
+                "glance_weights": (at_a_glance, mirror_at_a_glance(), GLANCE_HIDDEN)}
     if arguments.only:
         networks = {arguments.only: networks[arguments.only]}
     if arguments.dumps:
         head, x = load(arguments.dumps)
-    for name, (shown, hidden) in networks.items():
+    for name, (shown, mirror_of, hidden) in networks.items():
         path = arguments.out / f"{name}.inc"
         if arguments.dumps:
-            fit(head, x, shown, hidden, path)
+            fit(head, x, shown, mirror_of, hidden, path)
         else:
             nothing = shown(np.zeros((1, FEATURES), np.float32))
             layers = first_weights(np.random.default_rng(0), nothing.shape[1], hidden)
-            write(Standardised(nothing), layers, path)
+            write(Standardised(nothing, mirror_of), layers, path)
 
 
 if __name__ == "__main__":
