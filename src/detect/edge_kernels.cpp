@@ -39,6 +39,9 @@ std::int16_t bend_at(const EdgeBands& bands, int band, int column) {
   return static_cast<std::int16_t>(at[bands.flank] - 2 * at[0] + at[-bands.flank]);
 }
 
+// What a response of the wrong sign counts above the horizon.
+constexpr float kWrongSign = -0.7F;
+
 int whole_groups(int count) { return (count + kEdgeLanes - 1) / kEdgeLanes * kEdgeLanes; }
 
 // The sum of kEdgeLanes numbers, in halves.
@@ -68,6 +71,11 @@ LineSums SumPlaces(const EdgePlaces& places, EdgeLine line, float tail) {
 
 EdgeResponses RespondAlong(const EdgeBands& bands, EdgeLine left, EdgeLine right, float full) {
   return respond_along_plain(bands, left, right, full);
+}
+
+void JoinEdges(const EdgeBands& bands, EdgeLine left, EdgeLine right, float full,
+               BandValues& values) {
+  join_edges_plain(bands, left, right, full, values);
 }
 
 #else
@@ -269,29 +277,39 @@ LineSums SumPlaces(const EdgePlaces& places, EdgeLine line, float tail) {
   return {totals[0], totals[1], totals[2], totals[3], totals[4], totals[5]};
 }
 
+// The bends at the bands along a line; 0 beyond them.
+struct BendsAlong {
+  alignas(64) std::int16_t at[kMostEdgeBands] = {};
+  HWY_INLINE BendsAlong(const EdgeBands& bands, EdgeLine line) {
+    NearestColumns columns;
+    Follow(bands, line, columns);
+    for (int band = 0; band < bands.count; ++band)
+      at[band] = bend_at(bands, band, columns.at[band]);
+  }
+  HWY_INLINE Vector Responses(int band, Vector factor) const {
+    const auto one = hn::Set(Floats(), 1.0F);
+    return hn::Min(one, hn::Max(hn::Neg(one), hn::Mul(LoadShorts(at + band), factor)));
+  }
+};
+
+HWY_INLINE auto IsAbove(const EdgeBands& bands, int band) {
+  const Floats d;
+  return hn::Lt(hn::Iota(d, static_cast<float>(band)),
+                hn::Set(d, static_cast<float>(bands.horizon)));
+}
+
 EdgeResponses RespondAlong(const EdgeBands& bands, EdgeLine left, EdgeLine right, float full) {
   const Floats d;
-  const EdgeLine lines[2] = {left, right};
-  alignas(64) std::int16_t bends[2][kMostEdgeBands] = {};
-  for (int e = 0; e < 2; ++e) {
-    NearestColumns columns;
-    Follow(bands, lines[e], columns);
-    for (int band = 0; band < bands.count; ++band)
-      bends[e][band] = bend_at(bands, band, columns.at[band]);
-  }
-  const auto share = hn::Set(d, 1 / full), one = hn::Set(d, 1.0F);
-  const auto response = [&](const std::int16_t* bend, Vector factor) {
-    return hn::Min(one, hn::Max(hn::Neg(one), hn::Mul(LoadShorts(bend), factor)));
-  };
+  const BendsAlong bends[2] = {{bands, left}, {bands, right}};
+  const auto share = hn::Set(d, 1 / full);
   Sum below[2], above[2];
   EdgeResponses result;
   for (int i = 0; i < bands.count; i += kEdgeLanes) {
     for (int p = 0; p < kParts; ++p) {
       const int band = i + p * kLanes;
-      const Vector l = response(bends[0] + band, hn::Neg(share));
-      const Vector r = response(bends[1] + band, share);
-      const auto is_above = hn::Lt(hn::Iota(d, static_cast<float>(band)),
-                                   hn::Set(d, static_cast<float>(bands.horizon)));
+      const Vector l = bends[0].Responses(band, hn::Neg(share));
+      const Vector r = bends[1].Responses(band, share);
+      const auto is_above = IsAbove(bands, band);
       below[0].Add(p, hn::IfThenZeroElse(is_above, l));
       below[1].Add(p, hn::IfThenZeroElse(is_above, r));
       above[0].Add(p, hn::IfThenElseZero(is_above, hn::Abs(l)));
@@ -309,6 +327,25 @@ EdgeResponses RespondAlong(const EdgeBands& bands, EdgeLine left, EdgeLine right
   return result;
 }
 
+void JoinEdges(const EdgeBands& bands, EdgeLine left, EdgeLine right, float full,
+               BandValues& values) {
+  const Floats d;
+  const BendsAlong bends[2] = {{bands, left}, {bands, right}};
+  const auto share = hn::Set(d, 1 / full), half = hn::Set(d, 0.5F);
+  const auto joined = [&](Vector l, Vector r, float against) {
+    const auto sum = hn::Mul(hn::Set(d, 0.25F), hn::Add(l, r));
+    return hn::Sub(hn::Add(sum, hn::Mul(half, hn::Min(l, r))), hn::Set(d, against));
+  };
+  const auto any_sign = [&](Vector v) { return hn::Max(v, hn::Mul(hn::Set(d, kWrongSign), v)); };
+  for (int band = 0; band < bands.count; band += kLanes) {
+    const Vector l = bends[0].Responses(band, hn::Neg(share));
+    const Vector r = bends[1].Responses(band, share);
+    const auto above = hn::Mul(hn::Set(d, 0.4F), joined(any_sign(l), any_sign(r), 0.5F));
+    const auto value = hn::IfThenElse(IsAbove(bands, band), above, joined(l, r, 0.3F));
+    hn::StoreU(value, d, values.data() + band);
+  }
+}
+
 #endif  // HWY_TARGET
 
 }  // namespace bole::HWY_NAMESPACE
@@ -320,6 +357,7 @@ namespace bole {
 HWY_EXPORT(PlaceEdge);
 HWY_EXPORT(SumPlaces);
 HWY_EXPORT(RespondAlong);
+HWY_EXPORT(JoinEdges);
 
 void place_edge(const EdgeBands& bands, EdgeLine line, int sign, int least, float strongest,
                 EdgePlaces& places) {
@@ -332,6 +370,11 @@ LineSums sum_places(const EdgePlaces& places, EdgeLine line, float tail) {
 
 EdgeResponses respond_along(const EdgeBands& bands, EdgeLine left, EdgeLine right, float full) {
   return HWY_DYNAMIC_DISPATCH(RespondAlong)(bands, left, right, full);
+}
+
+void join_edges(const EdgeBands& bands, EdgeLine left, EdgeLine right, float full,
+                BandValues& values) {
+  HWY_DYNAMIC_DISPATCH(JoinEdges)(bands, left, right, full, values);
 }
 
 namespace {
@@ -411,6 +454,21 @@ EdgeResponses respond_along_plain(const EdgeBands& bands, EdgeLine left, EdgeLin
   result.below = {sum_of(below[0]), sum_of(below[1])};
   result.above = {sum_of(above[0]), sum_of(above[1])};
   return result;
+}
+
+void join_edges_plain(const EdgeBands& bands, EdgeLine left, EdgeLine right, float full,
+                      BandValues& values) {
+  for (int band = 0; band < bands.count; ++band) {
+    const bool above = band < bands.horizon;
+    const auto response = [&](EdgeLine line, float factor) {
+      const int bend = bend_at(bands, band, nearest_column(bands, line, band));
+      const float value = std::clamp(static_cast<float>(bend) * factor, -1.0F, 1.0F);
+      return above ? std::max(value, kWrongSign * value) : value;
+    };
+    const float l = response(left, -(1 / full)), r = response(right, 1 / full);
+    const float both = 0.25F * (l + r) + 0.5F * std::min(l, r);
+    values[band] = above ? 0.4F * (both - 0.5F) : both - 0.3F;
+  }
 }
 
 }  // namespace bole

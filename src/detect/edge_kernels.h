@@ -66,4 +66,13 @@ EdgeResponses respond_along(const EdgeBands& bands, EdgeLine left, EdgeLine righ
 EdgeResponses respond_along_plain(const EdgeBands& bands, EdgeLine left, EdgeLine right,
                                   float full);
 
+/// What two edges say of a trunk, band by band: (l + r) / 4 + min(l, r) / 2 - 0.3 with the same
+/// responses; above the horizon a response of the wrong sign counts -0.7 of one of the right sign,
+/// and the value is 0.4 ((l + r) / 4 + min(l, r) / 2 - 0.5).
+using BandValues = std::array<float, kMostEdgeBands>;
+void join_edges(const EdgeBands& bands, EdgeLine left, EdgeLine right, float full,
+                BandValues& values);
+void join_edges_plain(const EdgeBands& bands, EdgeLine left, EdgeLine right, float full,
+                      BandValues& values);
+
 }  // namespace bole

@@ -16,7 +16,7 @@ constexpr float kHopeless = -99;          // logit
 
 // The farther the search goes, the more trunks there are.
 int most_candidates(const Search& search) {
-  return static_cast<int>(std::clamp(250 + 27 * (search.range.high - 8), 250.0, 1100.0));
+  return static_cast<int>(std::clamp(210 + 28 * (search.range.high - 8), 210.0, 1100.0));
 }
 
 }  // namespace

@@ -16,13 +16,7 @@ constexpr float kLeastSum = 1.0F;    // of the contrast above another foot, in f
 constexpr float kFootReach = 6;      // rows: the network finds a foot that is this near
 constexpr float kMostTaper = 0.05F;  // difference of the edges' slopes
 constexpr int kLevelFeet = 3;
-constexpr float kFall = 0.4F;        // by how much it falls below it
-constexpr float kWrongSign = -0.7F;  // what a response of the wrong sign counts above the horizon
-
-float response(const std::uint16_t* sum, int x, int k) {
-  const auto bend = static_cast<std::int16_t>(sum[x + k] - 2 * sum[x] + sum[x - k]);
-  return static_cast<float>(bend) / static_cast<float>(k);
-}
+constexpr float kFall = 0.4F;  // by how much it falls below it
 
 // To the nearest whole number; columns and rows stay far from the limits.
 int nearest(float x) { return static_cast<int>(x + (kFar + 0.5F)) - static_cast<int>(kFar); }
@@ -202,7 +196,7 @@ bool EdgeFitter::fit(const Bands& bands, const Candidate& c, TrunkShape& shape,
 int EdgeFitter::other_feet(const Bands& bands, const TrunkShape& shape,
                            std::array<float, kOtherFeet>& feet) const {
   const int flank = std::clamp(static_cast<int>(0.3F * shape.width()), 2, 8);
-  const float sign = (shape.dark ? 1.0F : -1.0F) / kContrast;
+  const float full = (shape.dark ? kContrast : -kContrast) * static_cast<float>(flank);
   struct Peak {
     int band = 0;
     float sum = 0;
@@ -217,25 +211,19 @@ int EdgeFitter::other_feet(const Bands& bands, const TrunkShape& shape,
   Peak running;
   float sum = 0;
   const int lowest = std::min(bands.count(), static_cast<int>(shape.foot) / Bands::kRows + 30);
-  for (int band = first_band(shape.left, shape.right); band < lowest; ++band) {
-    const float row = row_of(band) - shape.foot;
-    const auto at = [&](float column, float slope) {
-      const int x = nearest(column + slope * row);
-      return std::clamp(sign * response(bands.sum(band), x, flank), -1.0F, 1.0F);
-    };
-    float l = -at(shape.left, shape.left_slope), r = at(shape.right, shape.right_slope);
-    if (band < horizon_band_) {
-      l = l < 0 ? kWrongSign * l : l;
-      r = r < 0 ? kWrongSign * r : r;
-      sum += 0.4F * ((l + r) / 4 + std::min(l, r) / 2 - 0.5F);
-    } else {
-      sum += (l + r) / 4 + std::min(l, r) / 2 - 0.3F;
-    }
-    sum = std::max(sum, 0.0F);
-    if (sum > running.sum) running = {band, sum};
-    if (running.sum > kLeastSum && sum < running.sum - kFall) {
-      offer(running);
-      running = {band, sum};
+  BandValues values;
+  for (int first = first_band(shape.left, shape.right); first < lowest; first += kMostEdgeBands) {
+    const EdgeBands edges =
+        along(bands, {first, std::min(lowest, first + kMostEdgeBands)}, shape.foot, flank);
+    join_edges(edges, {shape.left, shape.left_slope}, {shape.right, shape.right_slope}, full,
+               values);
+    for (int i = 0; i < edges.count; ++i) {
+      sum = std::max(sum + values[i], 0.0F);
+      if (sum > running.sum) running = {first + i, sum};
+      if (running.sum > kLeastSum && sum < running.sum - kFall) {
+        offer(running);
+        running = {first + i, sum};
+      }
     }
   }
   if (running.sum > kLeastSum) offer(running);

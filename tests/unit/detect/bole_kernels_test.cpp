@@ -11,6 +11,7 @@
 #include "detect/edge_search.h"
 #include "detect/foot_kernels.h"
 #include "detect/grid_kernels.h"
+#include "detect/row_contrasts.h"
 #include "detect/template_kernels.h"
 #include "simulate/noise.h"
 
@@ -223,6 +224,33 @@ TEST_P(Kernels, RespondAlongEdgesAsThePlainLoops) {
   EXPECT_EQ(fast.above, plain.above);
   EXPECT_EQ(fast.agree_below, plain.agree_below);
   EXPECT_EQ(fast.agree_above, plain.agree_above);
+}
+
+TEST_P(Kernels, JoinEdgesAsThePlainLoops) {
+  const RoughBands rough(1);
+  const EdgeBands bands = rough.bands(4);
+  const EdgeLine left{280, 0.02F}, right{316, 0.06F};
+  for (const float full : {225.0F, -225.0F}) {
+    BandValues fast, plain;
+    join_edges(bands, left, right, full, fast);
+    join_edges_plain(bands, left, right, full, plain);
+    for (int i = 0; i < bands.count; ++i) ASSERT_EQ(fast[i], plain[i]) << i;
+  }
+}
+
+TEST_P(Kernels, TellContrastsOfRowsAsThePlainLoop) {
+  simulate::Random random(5);
+  std::array<float, TrunkFeatures::kGrid> grid;
+  for (float& value : grid) value = random.normal();
+  std::fill_n(grid.begin(), 2 * TrunkFeatures::kAcross, 0.7F);
+  std::array<float, TrunkFeatures::kRowContrasts> fast, plain;
+  const RowLevels levels = row_contrasts(0.1F, grid.data(), fast.data());
+  const RowLevels same = row_contrasts_plain(0.1F, grid.data(), plain.data());
+  EXPECT_EQ(fast, plain);
+  for (int h = 0; h < TrunkFeatures::kHeights; ++h) {
+    EXPECT_EQ(levels.mean[h], same.mean[h]) << h;
+    EXPECT_EQ(levels.full[h], same.full[h]) << h;
+  }
 }
 
 TEST_P(Kernels, ReadCellsAsThePlainLoops) {
