@@ -30,9 +30,8 @@ JsonlPublisher::JsonlPublisher(const std::filesystem::path& target)
   }
 }
 
-void JsonlPublisher::publish(MessageKind kind, std::span<const std::byte> bytes,
+void JsonlPublisher::publish(MessageKind /*kind*/, std::span<const std::byte> bytes,
                              const std::string& file) {
-  if (kind != MessageKind::trees) return;
   write_json_line(decode_tree_list(bytes), file, line_);
   write_all(line_);
 }

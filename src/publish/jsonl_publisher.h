@@ -9,7 +9,7 @@
 
 namespace bole {
 
-/// Tree lists as lines of JSON, each written at once. Statuses are not written: a line is a list.
+/// Tree lists as lines of JSON, each written at once; no statuses: a line is a list.
 class JsonlPublisher : public Publisher {
  public:
   /// `target`: a path, whose file is made anew, or "-" for standard output. Throws ConfigError when
@@ -17,6 +17,7 @@ class JsonlPublisher : public Publisher {
   explicit JsonlPublisher(const std::filesystem::path& target);
 
   std::string name() const override { return "jsonl"; }
+  bool carries(MessageKind kind) const override { return kind == MessageKind::trees; }
   void publish(MessageKind kind, std::span<const std::byte> bytes,
                const std::string& file) override;
   void interrupt() noexcept override { interrupted_.raise(); }

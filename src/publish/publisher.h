@@ -22,6 +22,8 @@ class Publisher {
 
   /// "lcm", "zenoh", "jsonl": as in --publish and in status_t.
   virtual std::string name() const = 0;
+  /// False for a kind that the bus has no place for; publish() is not called with it.
+  virtual bool carries(MessageKind /*kind*/) const { return true; }
   /// Hands `bytes`, the LCM encoding of the message, to the bus. `file` is the replayed file's
   /// name, empty for a camera. Throws BusError when the bus does not take it.
   virtual void publish(MessageKind kind, std::span<const std::byte> bytes,

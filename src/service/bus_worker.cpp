@@ -43,6 +43,7 @@ BusWorker::~BusWorker() {
 
 void BusWorker::offer(MessageKind kind, std::span<const std::byte> bytes, std::string_view file,
                       std::int64_t processed_ns, std::int64_t seq) {
+  if (!publisher_->carries(kind)) return;
   Message& message = outgoing_.at(slot_of(kind));
   message.bytes.assign(bytes.begin(), bytes.end());
   message.file.assign(file);

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 #include <optional>
+#include <stdexcept>
 
 #include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
@@ -58,6 +59,15 @@ double cpu_seconds() {
     return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
   };
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+// A replay in lockstep promises its files every list. A network that is away is only a state.
+void refuse_losses(const std::vector<bus_t>& buses) {
+  for (const bus_t& bus : buses) {
+    if (bus.name != "jsonl" || bus.failed == 0) continue;
+    throw std::runtime_error(std::to_string(bus.failed) + " lists are lost: jsonl " +
+                             bus.last_error);
+  }
 }
 
 void log_summary(const Telemetry::Summary& summary, const std::vector<bus_t>& buses,
@@ -112,6 +122,7 @@ void run_daemon(const DaemonConfig& config, const std::string& version, int stop
     log_summary(telemetry.summary(), pipeline.bus_health(),
                 static_cast<double>(clock.mono_ns() - start_ns) / 1e9);
   }
+  if (setup.lockstep) refuse_losses(pipeline.bus_health());
 }
 
 }  // namespace bole

@@ -99,6 +99,14 @@ def test_without_a_multicast_route_the_error_is_clear_and_jsonl_goes_on(boled):
     assert run.stderr.count("no multicast route") == 1
 
 
+def test_a_full_disk_is_told_once_and_no_success_in_lockstep(boled):
+    run = boled("--pace", "lockstep", "--publish", "jsonl:/dev/full")
+    assert run.returncode == 1
+    assert run.stderr.count("(tried again with every message)") == 1
+    assert "publishing again" not in run.stderr
+    assert "20 lists are lost" in run.stderr.splitlines()[-1]
+
+
 def test_a_reader_that_stops_does_not_keep_boled_from_ending(programs, drive):
     command = [programs / "boled", "--camera", drive / "camera.toml", "--source", f"replay:{drive}",
                "--pace", "fast", "--loop", "--publish", "jsonl:-"]

@@ -13,6 +13,7 @@ namespace {
 struct BusScript {
   std::mutex mutex;
   std::condition_variable changed;
+  bool lists_only = false;
   bool held = false;
   std::string refusal;
   std::vector<std::size_t> sizes;  // of the messages that arrived
@@ -36,6 +37,9 @@ class ScriptedBus : public Publisher {
  public:
   explicit ScriptedBus(BusScript& script) : script_(script) {}
   std::string name() const override { return "scripted"; }
+  bool carries(MessageKind kind) const override {
+    return !script_.lists_only || kind == MessageKind::trees;
+  }
   void publish(MessageKind /*kind*/, std::span<const std::byte> bytes,
                const std::string& /*file*/) override {
     std::unique_lock lock(script_.mutex);
@@ -131,6 +135,20 @@ TEST(Buses, ARefusalIsAStateAndACounterAndEndsWithTheNextSuccess) {
   while (bus->health()[0].published < 1) std::this_thread::yield();
   EXPECT_EQ(bus->health()[0].healthy, 1);
   EXPECT_EQ(bus->health()[0].failed, 3);
+}
+
+TEST(Buses, ABusWithoutStatusesIsNotTakenForWellByThem) {
+  BusScript script;
+  script.lists_only = true;
+  script.refuse("disk full");
+  const auto bus = buses_of({&script}, WhenFull::wait);
+  offer(*bus, 1);
+  while (bus->health()[0].failed < 1) std::this_thread::yield();
+  offer(*bus, 2, MessageKind::status);
+  offer(*bus, 3);
+  while (bus->health()[0].failed < 2) std::this_thread::yield();
+  EXPECT_EQ(bus->health()[0].healthy, 0);
+  EXPECT_EQ(script.sizes, (std::vector<std::size_t>{1, 3}));
 }
 
 TEST(Buses, HandOversAreBinnedByPowersOfTwoMicroseconds) {
