@@ -4,7 +4,11 @@
 namespace {
 
 void add_commands(CLI::App& app) {
-  app.require_subcommand(1);
+  // None at all is refused last, so that a misspelt one is called by its name.
+  app.require_subcommand(0, 1);
+  app.final_callback([&app] {
+    if (app.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
+  });
   bole::add_cameras(app);
   bole::add_detect(app);
   bole::add_doctor(app);

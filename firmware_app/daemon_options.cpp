@@ -16,14 +16,15 @@ std::string list_of(const std::vector<std::string>& texts) {
 
 using Options = std::shared_ptr<DaemonOptions>;
 
-void add_number(CLI::App& app, const Options& options, const char* option, const char* key,
-                const char* help) {
+void add_seconds(CLI::App& app, const Options& options, const char* option, const char* key,
+                 const char* help) {
   app.add_option_function<std::string>(
-      option,
-      [options, key](const std::string& value) {
-        options->settings.push_back({key, value});
-      },
-      help);
+         option,
+         [options, key](const std::string& value) {
+           options->settings.push_back({key, value});
+         },
+         help)
+      ->type_name("SECONDS");
 }
 
 void add_switch(CLI::App& app, const Options& options, const char* option, const char* key,
@@ -87,8 +88,8 @@ void add_replay_options(CLI::App& app, const Options& options) {
   add_switch(app, options, "--loop", "source.loop", "Replay again and again");
   add_switch(app, options, "--restamp", "source.restamp",
              "Stamp replayed frames with the time of the replay");
-  add_number(app, options, "--start", "source.start_s", "Of a replay: seconds to leave out");
-  add_number(app, options, "--end", "source.end_s", "Of a replay: seconds after which it ends");
+  add_seconds(app, options, "--start", "source.start_s", "Of a replay: what to leave out");
+  add_seconds(app, options, "--end", "source.end_s", "Of a replay: when it ends");
   add_text_option(app, options, "--faults", "source.faults",
                   "Of a replay: a script of what goes wrong");
 }

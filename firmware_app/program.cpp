@@ -40,6 +40,11 @@ void set_up_log() {
   spdlog::set_default_logger(std::move(logger));
 }
 
+void add_version(CLI::App& app, const std::string& text) {
+  app.set_version_flag("--version", text);
+  for (CLI::App* command : app.get_subcommands({})) add_version(*command, text);
+}
+
 int fail(const char* name, const char* problem, int code) {
   std::fprintf(stderr, "%s: %s\n", name, problem);
   return code;
@@ -52,9 +57,10 @@ int run_program(const char* name, const char* description, void (*set_up)(CLI::A
   CLI::App app{description, name};
   try {
     set_up_log();
-    app.set_version_flag("--version", std::string(name) + " " + BOLE_VERSION);
     set_up(app);
+    add_version(app, std::string(name) + " " + BOLE_VERSION);
     app.parse(argc, argv);
+    flush_output();
     return EXIT_SUCCESS;
   } catch (const CLI::Success& shown) {  // --help, --version
     return app.exit(shown);
@@ -64,6 +70,12 @@ int run_program(const char* name, const char* description, void (*set_up)(CLI::A
     return fail(name, error.what(), 2);
   } catch (const std::exception& error) {
     return fail(name, error.what(), 1);
+  }
+}
+
+void flush_output() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    throw std::runtime_error("standard output cannot be written");
   }
 }
 

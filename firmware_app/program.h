@@ -10,4 +10,7 @@ namespace bole {
 int run_program(const char* name, const char* description, void (*set_up)(CLI::App&), int argc,
                 char** argv);
 
+/// Throws std::runtime_error when what was written to standard output cannot reach it.
+void flush_output();
+
 }  // namespace bole

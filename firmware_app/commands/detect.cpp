@@ -2,13 +2,12 @@
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
-#include <utility>
 
-#include "base/errors.h"
 #include "commands/commands.h"
 #include "evaluate/annotate.h"
 #include "evaluate/detections.h"
 #include "evaluate/image_detector.h"
+#include "program.h"
 
 namespace bole {
 namespace {
@@ -22,31 +21,30 @@ struct Options {
   std::vector<std::string> images;
 };
 
-void detect_in(ImageDetector& detector, const fs::path& image, const std::string& annotate) {
-  const cv::Mat3b picture = read_picture(image);
-  const std::span<const Tree> trees = detector.detect(picture);
-  std::puts(detection_line(image.filename().string(), trees).c_str());
-  if (annotate.empty()) return;
-  write_annotations(annotate, image.stem().string(), detector.camera(), detector.table(), picture,
-                    trees);
-}
-
 void detect(const Options& options) {
   ImageDetector detector(options.camera, *detector_mode_from_name(options.mode));
-  std::vector<std::pair<std::string, std::string>> bad;  // images and what is wrong with them
+  std::size_t bad = 0;
+  std::string first_bad;  // the image and what is wrong with it
   for (const fs::path image : options.images) {
+    cv::Mat3b picture;
+    std::span<const Tree> trees;
     try {
-      detect_in(detector, image, options.annotate);
+      picture = read_picture(image);
+      trees = detector.detect(picture);
     } catch (const std::runtime_error& error) {
       std::puts(error_line(image.filename().string(), error.what()).c_str());
-      bad.emplace_back(image, error.what());
+      if (bad++ == 0) first_bad = image.string() + ": " + error.what();
+      continue;
     }
-    std::fflush(stdout);
+    std::puts(detection_line(image.filename().string(), trees).c_str());
+    flush_output();
+    if (!options.annotate.empty()) {
+      write_annotations(options.annotate, image.stem().string(), detector.camera(),
+                        detector.table(), picture, trees);
+    }
   }
-  if (bad.empty()) return;
-  const std::string others =
-      bad.size() == 1 ? "" : "so are " + std::to_string(bad.size() - 1) + " other images";
-  throw ConfigError(bad.front().first, "", bad.front().second, others);
+  if (bad > 1) first_bad += "; bad images in all: " + std::to_string(bad);
+  if (bad > 0) throw std::runtime_error(first_bad);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "base/stop_signals.h"
 #include "commands/commands.h"
 #include "geometry/angles.h"
+#include "program.h"
 #include "publish/decoder.h"
 #include "publish/json_line.h"
 #include "publish/lcm_subscriber.h"
@@ -91,7 +92,7 @@ class Listener {
       const std::string text = stream + " " + error.what();
       if (named_.size() < kMostNamed && named_.insert(text).second) spdlog::warn("{}", text);
     }
-    std::fflush(stdout);
+    flush_output();  // a reader that has gone ends us
   }
 
   bool done() const { return options_.count > 0 && lists_ >= options_.count; }
@@ -187,12 +188,15 @@ void listen(const ListenOptions& options) {
 void add_listen(CLI::App& app) {
   auto options = std::make_shared<ListenOptions>();
   CLI::App* command = app.add_subcommand("listen", "Shows the lists and states on a bus");
-  command->add_option("--lcm", options->lcm_url, "LCM's address")->capture_default_str();
-  command->add_option("--zenoh", options->zenoh_endpoint,
-                      "Listen on Zenoh instead, at an endpoint as tcp/127.0.0.1:7447");
+  CLI::Option* lcm =
+      command->add_option("--lcm", options->lcm_url, "LCM's address")->capture_default_str();
+  command
+      ->add_option("--zenoh", options->zenoh_endpoint,
+                   "Listen on Zenoh instead, at an endpoint as tcp/127.0.0.1:7447")
+      ->excludes(lcm);
   command->add_option("--count", options->count, "Stop after so many lists; 0 = never")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0, 1'000'000'000));
   command->add_flag("--json", options->json,
                     "A line of JSON a message, and one a stream at the end");
   command->callback([options] { listen(*options); });

@@ -102,7 +102,7 @@ void add_publish_fake(CLI::App& app) {
       ->check(CLI::Range(0.1, 1000.0));
   command->add_option("--count", options->count, "Stop after so many lists; 0 = never")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0, 1'000'000'000));
   command->add_option("--seed", options->seed, "Of the wood")->capture_default_str();
   command->callback([daemon, options] { publish_fake(daemon->load(), *options); });
 }

@@ -37,8 +37,8 @@ def bad_frame(request, drive, tmp_path):
     return path
 
 
-def assert_refused(run, *named):
-    assert run.returncode == 2
+def assert_refused(run, *named, code=2):
+    assert run.returncode == code
     assert run.stderr.startswith("bolectl: ") and run.stderr.count("\n") == 1, run.stderr
     for name in named:
         assert str(name) in run.stderr
@@ -47,7 +47,7 @@ def assert_refused(run, *named):
 def test_detect_names_a_bad_image_and_goes_on_with_the_others(bolectl, drive, bad_frame):
     good = [drive / "frame_000000.jpg", drive / "frame_000001.jpg"]
     run = bolectl("detect", "--camera", drive / "camera.toml", good[0], bad_frame, good[1])
-    assert_refused(run, bad_frame)
+    assert_refused(run, bad_frame, code=1)
     before, bad, after = map(json.loads, run.stdout.splitlines())
     assert before["file"] == good[0].name and "trees" in before
     assert bad["file"] == bad_frame.name and bad["error"] in run.stderr
@@ -57,9 +57,16 @@ def test_detect_names_a_bad_image_and_goes_on_with_the_others(bolectl, drive, ba
 def test_detect_counts_bad_images_beyond_the_first(bolectl, drive, tmp_path):
     missing = [tmp_path / name for name in ("a.jpg", "b.jpg", "c.jpg")]
     run = bolectl("detect", "--camera", drive / "camera.toml", *missing)
-    assert_refused(run, missing[0], "2 other images")
+    assert_refused(run, missing[0], "bad images in all: 3", code=1)
     assert [json.loads(line)["file"] for line in run.stdout.splitlines()] == ["a.jpg", "b.jpg",
                                                                               "c.jpg"]
+
+
+def test_detect_does_not_blame_the_image_for_pictures_that_cannot_be_written(bolectl, drive):
+    run = bolectl("detect", "--camera", drive / "camera.toml", "--annotate", drive / "camera.toml",
+                  drive / "frame_000000.jpg")
+    assert_refused(run, "camera.toml", code=1)
+    assert "trees" in json.loads(run.stdout)
 
 
 def test_eval_names_a_bad_frame(bolectl, drive, bad_frame):

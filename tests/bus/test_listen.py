@@ -1,16 +1,33 @@
 """bolectl listen against boled, and against those who misuse our channels."""
 
+import contextlib
 import json
+import pathlib
+import re
 import subprocess
 import time
 
 import lcm
+from processes import eventually
+
+
+@contextlib.contextmanager
+def listening(programs, lcm_url, *arguments):
+    """bolectl listen from when it has subscribed on; killed at the end, whatever it still waits for."""
+    port = f":{int(re.search(r':([0-9]+)', lcm_url)[1]):04X} "
+    command = [programs / "bolectl", "listen", "--lcm", lcm_url, *arguments]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          text=True) as listener:
+        try:
+            assert eventually(lambda: port in pathlib.Path("/proc/net/udp").read_text())
+            time.sleep(0.5)  # LCM tries its own socket first
+            yield listener
+        finally:
+            listener.kill()
 
 
 def test_listen_counts_lists_and_losses(programs, drive, lcm_url):
-    command = [programs / "bolectl", "listen", "--lcm", lcm_url, "--count", "20", "--json"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as listener:
-        time.sleep(0.5)
+    with listening(programs, lcm_url, "--count", "20", "--json") as listener:
         subprocess.run([programs / "boled", "--camera", drive / "camera.toml", "--source",
                         f"replay:{drive}", "--publish", "lcm", "--set", f"lcm.url={lcm_url}"],
                        check=True, stderr=subprocess.DEVNULL)
@@ -23,10 +40,7 @@ def test_listen_counts_lists_and_losses(programs, drive, lcm_url):
 
 
 def test_listen_survives_and_names_foreign_payloads(programs, types, lcm_url):
-    command = [programs / "bolectl", "listen", "--lcm", lcm_url, "--count", "1", "--json"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                          text=True) as listener:
-        time.sleep(0.5)
+    with listening(programs, lcm_url, "--count", "1", "--json") as listener:
         bus = lcm.LCM(lcm_url)
         bus.publish("BOLE_TREES", b"")
         bus.publish("BOLE_TREES", types.status_t().encode())
@@ -40,10 +54,15 @@ def test_listen_survives_and_names_foreign_payloads(programs, types, lcm_url):
     assert "is cut off" in log and "fingerprint" in log
 
 
+def test_listen_ends_when_its_reader_has_gone(programs, types, lcm_url):
+    with listening(programs, lcm_url) as listener:
+        listener.stdout.close()
+        lcm.LCM(lcm_url).publish("BOLE_TREES", types.tree_list_t().encode())
+        assert listener.wait(5) == 1
+
+
 def test_a_planner_can_do_without_a_camera(programs, lcm_url):
-    command = [programs / "bolectl", "listen", "--lcm", lcm_url, "--count", "15", "--json"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as listener:
-        time.sleep(0.5)
+    with listening(programs, lcm_url, "--count", "15", "--json") as listener:
         subprocess.run([programs / "bolectl", "publish-fake", "--count", "15", "--publish", "lcm",
                         "--set", f"lcm.url={lcm_url}"], check=True, stderr=subprocess.DEVNULL)
         text, _ = listener.communicate(timeout=20)
