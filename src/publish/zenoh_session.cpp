@@ -88,10 +88,11 @@ auto translated(auto&& call) -> decltype(call()) {
   }
 }
 
-rust::Box<bridge::Session> open(const ZenohConfig& config, const bridge::Settings& settings) {
+// `call`: of the bridge, with the problem that it may leave.
+auto configured(const ZenohConfig& config, auto&& call) {
   bridge::Problem problem;
   try {
-    return bridge::open(settings, problem);
+    return call(problem);
   } catch (const rust::Error& error) {
     if (problem.problem.empty()) throw BusError(std::string("zenoh: ") + error.what());
     throw ConfigError(config.file, std::string(problem.key), std::string(problem.problem),
@@ -101,13 +102,21 @@ rust::Box<bridge::Session> open(const ZenohConfig& config, const bridge::Setting
 
 }  // namespace
 
+void check_zenoh(const ZenohConfig& config) {
+  configured(config, [&](bridge::Problem& problem) {
+    bridge::check(to_rust(config, std::nullopt, {}), problem);
+  });
+}
+
 struct ZenohSession::Impl {
   rust::Box<bridge::Session> session;
 };
 
 ZenohSession::ZenohSession(const ZenohConfig& config, const std::optional<ZenohIdentity>& identity,
                            const std::vector<std::string>& subscribe)
-    : impl_(std::make_unique<Impl>(Impl{open(config, to_rust(config, identity, subscribe))})) {}
+    : impl_(std::make_unique<Impl>(Impl{configured(config, [&](bridge::Problem& problem) {
+        return bridge::open(to_rust(config, identity, subscribe), problem);
+      })})) {}
 
 ZenohSession::ZenohSession(ZenohSession&&) noexcept = default;
 ZenohSession& ZenohSession::operator=(ZenohSession&&) noexcept = default;

@@ -65,6 +65,10 @@ struct ZenohWarning {
   std::uint64_t count = 0;
 };
 
+/// Throws ConfigError for settings that cannot work, as ZenohSession does but for ports in use, and
+/// touches no network.
+void check_zenoh(const ZenohConfig& config);
+
 /// A Zenoh session that opens in the background and finds its way back after every outage. It may
 /// be used by several threads. Ignore SIGPIPE in a program that uses it.
 class ZenohSession {

@@ -49,7 +49,8 @@ void lay_over(toml::table& root, const Setting& setting) {
 }
 
 std::string default_camera_name(const std::filesystem::path& camera_toml) {
-  std::string name = std::filesystem::absolute(camera_toml).parent_path().filename().string();
+  const auto file = std::filesystem::absolute(camera_toml).lexically_normal();
+  std::string name = file.parent_path().filename().string();
   std::ranges::replace_if(
       name, [](unsigned char c) { return !is_key_character(c); }, '_');
   name.resize(std::min(name.size(), kMostCameraBytes));
@@ -106,8 +107,10 @@ PublishTarget target(const TomlTable& table, const std::string& text) {
 }
 
 void read_publish(TomlTable table, DaemonConfig::PublishPart& publish) {
-  for (const std::string& text : table.texts("to", {"lcm"})) {
+  const std::vector<std::string> texts = table.texts("to", {"lcm"});
+  for (const std::string& text : texts) {
     publish.to.push_back(target(table, text));
+    if (std::ranges::count(texts, text) > 1) table.fail("to", "names " + text + " twice", "");
   }
   publish.min_score = table.number("min_score", publish.min_score, {0, 1});
   publish.robot = key_name(table, "robot", publish.robot, 64);
@@ -115,7 +118,7 @@ void read_publish(TomlTable table, DaemonConfig::PublishPart& publish) {
 }
 
 void read_zenoh(TomlTable table, ZenohConfig& zenoh) {
-  zenoh.mode = table.text("mode", "");
+  if (table.has("mode")) zenoh.mode = table.choice("mode", "", {"peer", "client", "router"});
   zenoh.listen = table.texts("listen", {});
   zenoh.connect = table.texts("connect", {});
   if (table.has("multicast_scouting")) {
@@ -175,7 +178,7 @@ DaemonConfig load_daemon_config(const std::optional<std::filesystem::path>& file
   TomlTable lcm = root.table("lcm");
   config.lcm = parse_lcm_url(lcm.text("url", kDefaultLcmUrl), origin, "lcm.url");
   lcm.done();
-  config.zenoh.file = origin;
+  config.file = config.zenoh.file = origin;
   read_zenoh(root.table("zenoh"), config.zenoh);
   read_service(root.table("service"), config.service);
   root.done();

@@ -66,6 +66,7 @@ struct DaemonConfig {
     std::filesystem::path trace;  ///< where the time of frames goes, for Chrome; empty: no trace
   } service;
 
+  std::string file;  ///< where the settings stand, for messages
   std::string text;  ///< the file and the settings in one, as TOML
 };
 

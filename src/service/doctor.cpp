@@ -2,9 +2,12 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <functional>
+#include <system_error>
 
 #include "capture/frame_source.h"
+#include "capture/libcamera/libcamera.h"
 #include "capture/v4l2/device.h"
 #include "publish/lcm_url.h"
 #include "service/make_source.h"
@@ -50,9 +53,17 @@ std::string device_detail(const std::string& name) {
   return node.string() + ", " + reinterpret_cast<const char*>(capability.card);
 }
 
+std::string libcamera_detail(const std::string& uri) {
+  for (const CameraInfo& camera : libcamera_plugin().list()) {
+    if (camera.source == uri) return uri + ", " + camera.model;
+  }
+  throw std::runtime_error(uri + " is not there; plug it in, or choose from bolectl cameras");
+}
+
 std::string source_detail(const DaemonConfig& config, const Camera& camera) {
   const SourceSetup setup = make_source(config, camera);
-  if (setup.kind != ListSource::v4l2) return setup.source->description();
+  if (setup.kind == ListSource::replay) return setup.source->description();
+  if (setup.kind == ListSource::libcamera) return libcamera_detail(config.source.uri);
   const std::string name = config.source.uri.substr(config.source.uri.find(':') + 1);
   try {
     return device_detail(name);
@@ -70,14 +81,45 @@ std::string lcm_detail(const LcmUrl& url) {
 
 std::string zenoh_detail(const ZenohConfig& config) {
 #ifdef BOLE_ZENOH
+  check_zenoh(config);
   if (config.listen.empty() && config.connect.empty() && config.config_file.empty()) {
     return "listens on tcp/127.0.0.1:7447, this machine only";
   }
-  return "endpoints are set";
+  return "its settings fit together";
 #else
   static_cast<void>(config);
   throw std::runtime_error("is not in this build; install cargo and build again");
 #endif
+}
+
+std::string jsonl_detail(const std::filesystem::path& file) {
+  if (file == "-") return "standard output";
+  std::error_code error;
+  const bool there = std::filesystem::exists(file, error);
+  const auto folder = file.has_parent_path() ? file.parent_path() : ".";
+  if (::access(there ? file.c_str() : folder.c_str(), W_OK) != 0) {
+    throw std::runtime_error(file.string() +
+                             " cannot be written: " + std::generic_category().message(errno));
+  }
+  return file.string();
+}
+
+std::string target_detail(const PublishTarget& target, const DaemonConfig& config) {
+  switch (target.bus) {
+    case PublishTarget::Bus::lcm:
+      return lcm_detail(config.lcm);
+    case PublishTarget::Bus::zenoh:
+      return zenoh_detail(config.zenoh);
+    case PublishTarget::Bus::jsonl:
+      break;
+  }
+  return jsonl_detail(target.path);
+}
+
+std::string name(PublishTarget::Bus bus) {
+  return bus == PublishTarget::Bus::lcm     ? "lcm"
+         : bus == PublishTarget::Bus::zenoh ? "zenoh"
+                                            : "jsonl";
 }
 
 }  // namespace
@@ -94,11 +136,7 @@ std::vector<Finding> examine(const DaemonConfig& config) {
     findings.push_back(find("source", [&] { return source_detail(config, *camera); }));
   }
   for (const PublishTarget& target : config.publish.to) {
-    if (target.bus == PublishTarget::Bus::lcm) {
-      findings.push_back(find("lcm", [&] { return lcm_detail(config.lcm); }));
-    } else if (target.bus == PublishTarget::Bus::zenoh) {
-      findings.push_back(find("zenoh", [&] { return zenoh_detail(config.zenoh); }));
-    }
+    findings.push_back(find(name(target.bus), [&] { return target_detail(target, config); }));
   }
   return findings;
 }

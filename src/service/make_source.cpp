@@ -66,7 +66,7 @@ SourceSetup make_source(const DaemonConfig& config, const Camera& camera) {
   if (scheme == "libcamera" && !rest.empty()) {
     return make_camera(config.source, rest, camera, ListSource::libcamera, make_libcamera_source);
   }
-  throw ConfigError("source", "uri", uri.empty() ? "is missing" : "is \"" + uri + "\"",
+  throw ConfigError(config.file, "source.uri", uri.empty() ? "is missing" : "is \"" + uri + "\"",
                     "must be v4l2:DEVICE, libcamera:ID or replay:PATH");
 }
 

@@ -39,6 +39,15 @@ TEST(ZenohSession, RefusesAPortInUse) {
               AllOf(HasSubstr("zenoh.listen"), HasSubstr("the port is in use")));
 }
 
+TEST(ZenohSettings, AreCheckedWithoutAPort) {
+  int port = 0;
+  const auto taken = bind_to_free_port(port);
+  ASSERT_EQ(listen(taken.get(), 1), 0);
+  EXPECT_NO_THROW(check_zenoh(listening("tcp/127.0.0.1:" + std::to_string(port))));
+  EXPECT_THAT(error_of([] { check_zenoh(connecting("tcp/127.0.0.1")); }),
+              HasSubstr("boled.toml: zenoh.connect: "));
+}
+
 TEST(ZenohSession, RefusesSettingsThatCannotWork) {
   auto config = listening(free_endpoint());
   config.mode = "broker";

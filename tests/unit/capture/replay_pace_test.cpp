@@ -115,7 +115,7 @@ TEST(Replay, RestampGivesTheInstantOfRelease) {
   EXPECT_EQ(grab.frame.stamp().clock, StampClock::monotonic);
   EXPECT_EQ(grab.frame.stamp().ns, 7'100'000'000);
   options.pace.kind = ReplayPace::Kind::lockstep;
-  EXPECT_THAT(refusal(options), HasSubstr("--restamp"));
+  EXPECT_THAT(refusal(options), HasSubstr("source.restamp"));
 }
 
 TEST(Replay, RefusesAPaceThatIsNone) {

@@ -64,6 +64,10 @@ TEST(DaemonConfig, SettingsLieOverTheFile) {
 
 TEST(DaemonConfig, TheCameraIsNamedAfterItsFolder) {
   EXPECT_EQ(with({"camera.file=/etc/bole/left eye/camera.toml"}).camera.name, "left_eye");
+  EXPECT_EQ(with({"camera.file=/etc/bole/rear/./camera.toml"}).camera.name, "rear");
+  EXPECT_EQ(with({"camera.file=/etc/bole/rear/../front/camera.toml"}).camera.name, "front");
+  EXPECT_EQ(with({"camera.file=./camera.toml"}).camera.name,
+            with({"camera.file=c.toml"}).camera.name);
   EXPECT_EQ(with({"camera.file=/a/abcdefghijklmnopqrstuvwxyz/c.toml"}).camera.name.size(), 16U);
 }
 
@@ -71,9 +75,10 @@ TEST(DaemonConfig, RefusesWhatIsNotAsItMustBeAndNamesIt) {
   for (const char* pair :
        {"publish.min_score=1.5", "publish.min_score=nan", "publish.min_scor=0.5", "detec.mode=bole",
         "detect.mode=best", "publish.to=lcm", "publish.to=[\"udp\"]", "publish.to=[\"jsonl:\"]",
-        "camera.name=\"\"", "camera.name=abcdefghijklmnopq", "publish.robot=\"a/b\"",
-        "source.loop=1", "source.rate_hz=0", "lcm.url=tcp", "service.realtime_priority=100",
-        "publish.min_score.x=1", "camera.file=["}) {
+        "publish.to=[\"lcm\", \"lcm\"]", "zenoh.mode=broker", "camera.name=\"\"",
+        "camera.name=abcdefghijklmnopq", "publish.robot=\"a/b\"", "source.loop=1",
+        "source.rate_hz=0", "lcm.url=tcp", "service.realtime_priority=100", "publish.min_score.x=1",
+        "camera.file=["}) {
     const std::string text = pair;
     const std::string part = text.substr(0, text.find_first_of(".="));
     EXPECT_THAT([&] { with({text}); }, ThrowsMessage<ConfigError>(HasSubstr(part))) << text;

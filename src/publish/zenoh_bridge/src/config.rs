@@ -24,6 +24,11 @@ fn problem(key: &str, problem: impl ToString, remedy: impl ToString) -> Problem 
     }
 }
 
+/// Of an error text: a parser may quote the whole file, and what is secret in it.
+fn beginning(text: &str) -> String {
+    text.chars().take(100).collect()
+}
+
 /// The configuration, and the typed settings that the configuration file contradicted.
 pub fn build(settings: &Settings) -> Checked<(Config, Vec<String>)> {
     check_endpoints("zenoh.connect", &settings.connect)?;
@@ -34,7 +39,7 @@ pub fn build(settings: &Settings) -> Checked<(Config, Vec<String>)> {
         "" => Config::default(),
         path => Config::from_file(path).map_err(|e| {
             let remedy = format!("give a zenoh configuration in JSON5, not {path}");
-            problem("zenoh.config_file", e, remedy)
+            problem("zenoh.config_file", beginning(&e.to_string()), remedy)
         })?,
     };
     let untouched = Config::default();
@@ -169,15 +174,20 @@ fn check_endpoints(key: &str, endpoints: &[String]) -> Checked<()> {
         if host.is_empty() || port.parse::<u16>().is_err() {
             return Err(wrong("has no host and port"));
         }
-        if key == "zenoh.listen" {
-            // Other failures may pass, as an address that the interface has not got yet.
-            match TcpListener::bind(address.as_str()) {
-                Err(e) if e.kind() == ErrorKind::AddrInUse => {
-                    let remedy = "choose another port, or end the other program";
-                    return Err(problem(key, format!("{text:?}: the port is in use"), remedy));
-                }
-                _ => {}
-            }
+    }
+    Ok(())
+}
+
+/// Refuses endpoints to listen on whose port another program has.
+pub fn check_ports(listen: &[String]) -> Checked<()> {
+    for text in listen {
+        let Ok(endpoint) = text.parse::<EndPoint>() else { continue };
+        // Other failures may pass, as an address that the interface has not got yet.
+        let bound = TcpListener::bind(endpoint.address().as_str());
+        if bound.is_err_and(|e| e.kind() == ErrorKind::AddrInUse) {
+            let what = format!("{text:?}: the port is in use");
+            let remedy = "choose another port, or end the other program";
+            return Err(problem("zenoh.listen", what, remedy));
         }
     }
     Ok(())

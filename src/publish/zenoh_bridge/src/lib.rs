@@ -84,6 +84,7 @@ mod ffi {
     extern "Rust" {
         type Session;
 
+        fn check(settings: &Settings, problem: &mut Problem) -> Result<()>;
         fn open(settings: &Settings, problem: &mut Problem) -> Result<Box<Session>>;
         fn overridden(self: &Session) -> Vec<String>;
         fn put(self: &Session, topic: usize, payload: &[u8]) -> Result<bool>;
@@ -102,13 +103,23 @@ fn guarded<T>(body: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
         .unwrap_or_else(|_| Err("zenoh failed inside (panic); see the log".into()))
 }
 
+/// What is wrong with the settings goes to C++ beside the error.
+fn told<T>(result: Result<T, ffi::Problem>, problem: &mut ffi::Problem) -> Result<T, Error> {
+    result.map_err(|found| {
+        *problem = found;
+        "bad configuration".into()
+    })
+}
+
+/// Looks the settings over as `open` does, but for ports in use, and opens nothing.
+fn check(settings: &ffi::Settings, problem: &mut ffi::Problem) -> Result<(), Error> {
+    guarded(|| told(config::build(settings).map(|_| ()), problem))
+}
+
 fn open(settings: &ffi::Settings, problem: &mut ffi::Problem) -> Result<Box<Session>, Error> {
     guarded(|| {
         log::install();
-        Session::open(settings).map(Box::new).map_err(|found| {
-            *problem = found;
-            "bad configuration".into()
-        })
+        told(Session::open(settings).map(Box::new), problem)
     })
 }
 
