@@ -12,6 +12,7 @@ namespace {
 struct Options {
   std::string camera;
   std::string table;
+  bool json = false;
 };
 
 void build(const Options& options) {
@@ -30,12 +31,17 @@ void info(const Options& options) {
   const PanoramaGeometry& panorama = table.panorama();
   const SeenMap seen = table.seen();
   const auto pixels = std::count(seen.pixels.begin(), seen.pixels.end(), std::uint8_t{1});
-  std::printf(
-      "image %d x %d, panorama %d x %d of %d columns, %.1f %% of it seen, %zu bytes, camera %08x\n",
-      table.image_size().width, table.image_size().height, panorama.width, panorama.rows,
-      panorama.columns,
-      100.0 * static_cast<double>(pixels) / static_cast<double>(seen.pixels.size()),
-      table.bytes().size(), table.digest());
+  const char* form =
+      options.json
+          ? "{\"image_width\":%d,\"image_height\":%d,\"panorama_width\":%d,"
+            "\"panorama_rows\":%d,\"columns\":%d,\"seen\":%.3f,\"bytes\":%zu,"
+            "\"camera\":\"%08x\"}\n"
+          : "image %d x %d, panorama %d x %d of %d columns, %.3f of it seen, %zu bytes, camera "
+            "%08x\n";
+  std::printf(form, table.image_size().width, table.image_size().height, panorama.width,
+              panorama.rows, panorama.columns,
+              static_cast<double>(pixels) / static_cast<double>(seen.pixels.size()),
+              table.bytes().size(), table.digest());
 }
 
 }  // namespace
@@ -54,6 +60,7 @@ void add_lut(CLI::App& app) {
       command->add_subcommand("info", "Checks a table against its camera and describes it");
   info_command->add_option("--camera", options->camera, "camera.toml")->required();
   info_command->add_option("TABLE", options->table, "The table's file")->required();
+  info_command->add_flag("--json", options->json, "one line of JSON");
   info_command->callback([options] { info(*options); });
 }
 

@@ -11,12 +11,25 @@ import pytest
 from processes import free_endpoint
 
 
-@pytest.mark.parametrize("program", ["boled", "bolectl"])
+@pytest.mark.parametrize("program", ["boled", "bolectl", "bolectl detect", "bolectl lut info"])
 def test_help_and_version(programs, program):
-    for option, text in [("--help", "Usage:"), ("--version", f"{program} ")]:
-        run = subprocess.run([programs / program, option], capture_output=True, text=True)
+    name, *command = program.split()
+    for option, text in [("--help", "Usage:"), ("--version", f"{name} ")]:
+        run = subprocess.run([programs / name, *command, option], capture_output=True, text=True)
         assert run.returncode == 0
         assert text in run.stdout
+
+
+@pytest.mark.parametrize("arguments, named", [
+    ([], "subcommand"),
+    (["detekt"], "detekt"),
+    (["listen", "--count", "-1"], "--count"),
+    (["listen", "--lcm", "udpm://239.255.76.67:7667", "--zenoh", "tcp/127.0.0.1:7447"], "--zenoh"),
+])
+def test_wrong_usage_of_bolectl_is_one_short_line(bolectl, arguments, named):
+    run = bolectl(*arguments)
+    assert run.returncode == 2
+    assert named in run.stderr and run.stderr.count("\n") == 1 and len(run.stderr) < 100
 
 
 @pytest.mark.parametrize("arguments, named", [
@@ -27,12 +40,23 @@ def test_help_and_version(programs, program):
     (["--publish", "udp"], "udp"),
     (["--config", "/nonexistent.toml"], "/nonexistent.toml"),
     (["--nonsense"], "--nonsense"),
+    (["--publish", "lcm,lcm"], "publish.to"),
+    (["--set", 'source.uri="tape"'], "source.uri"),
 ])
 def test_wrong_usage_is_one_line_and_exit_code_2(boled, arguments, named):
     run = boled(*arguments)
     assert run.returncode == 2
     assert run.stdout == ""
     assert named in run.stderr and run.stderr.count("\n") == 1
+
+
+def test_results_that_cannot_be_written_are_no_success(programs, drive):
+    with open("/dev/full", "w") as full:
+        run = subprocess.run([programs / "bolectl", "detect", "--camera", drive / "camera.toml",
+                              drive / "frame_000000.jpg"], stdout=full, stderr=subprocess.PIPE,
+                             text=True)
+    assert run.returncode == 1
+    assert "standard output" in run.stderr and run.stderr.count("\n") == 1
 
 
 def test_a_missing_camera_file_is_one_line_and_exit_code_2(boled):
@@ -89,6 +113,8 @@ def test_lut_builds_a_table_that_fits_its_camera_only_and_whole(bolectl, drive, 
     assert bolectl("lut", "build", "--camera", camera, "--out", table).returncode == 0
     shown = bolectl("lut", "info", "--camera", camera, table)
     assert shown.returncode == 0 and "panorama" in shown.stdout
+    listed = json.loads(bolectl("lut", "info", "--json", "--camera", camera, table).stdout)
+    assert listed["bytes"] == table.stat().st_size and 0.5 < listed["seen"] < 1
     damaged = bytearray(table.read_bytes())
     damaged[len(damaged) // 2] ^= 1
     table.write_bytes(damaged)
@@ -104,6 +130,21 @@ def test_doctor_says_what_is_well_and_what_mends_the_rest(bolectl, drive):
     ill = bolectl(*common, "--source", "v4l2:/dev/v4l/by-id/nothing")
     assert ill.returncode == 1
     assert re.search("^BAD +source: .*nothing", ill.stdout, re.MULTILINE)
+
+
+@pytest.mark.parametrize("settings, bad", [
+    (["--publish", "zenoh", "--set", "zenoh.tls.ca=/nonexistent.pem"], "zenoh: .*nonexistent"),
+    (["--publish", "zenoh", "--set", 'zenoh.mode="client"'], "zenoh: .*zenoh.connect"),
+    (["--publish", "jsonl:/nonexistent/lists"], "jsonl: /nonexistent/lists"),
+    (["--source", "libcamera:nothing"], "source: .*(nothing|install)"),
+])
+def test_doctor_takes_nothing_for_well_that_boled_would_refuse(bolectl, drive, settings, bad):
+    source = [] if "--source" in settings else ["--source", f"replay:{drive}"]
+    run = bolectl("doctor", "--camera", drive / "camera.toml", *source, *settings)
+    if "zenoh" in settings and "not in this build" in run.stdout:
+        pytest.skip("built without Zenoh")
+    assert run.returncode == 1
+    assert re.search(f"^BAD +{bad}", run.stdout, re.MULTILINE), run.stdout
 
 
 def test_trace_shows_every_step_of_every_frame(boled, tmp_path):
