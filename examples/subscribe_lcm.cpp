@@ -1,4 +1,4 @@
-// Trees from LCM. lcm-gen -x /usr/share/bole/types/*.lcm && g++ subscribe_lcm.cpp -I. -llcm
+// Trees from LCM. lcm-gen -x /usr/local/share/bole/types/*.lcm && g++ subscribe_lcm.cpp -I. -llcm
 #include <cstdio>
 
 #include <lcm/lcm-cpp.hpp>

@@ -1,4 +1,4 @@
-"""Trees from LCM: pip install lcm; PYTHONPATH=/usr/share/bole/python python3 subscribe_lcm.py"""
+"""Trees from LCM: pip install lcm; PYTHONPATH=/usr/local/share/bole/python python3 subscribe_lcm.py"""
 
 import lcm
 

@@ -1,5 +1,5 @@
 """Trees from Zenoh: pip install eclipse-zenoh;
-PYTHONPATH=/usr/share/bole/python python3 subscribe_zenoh.py tcp/127.0.0.1:7447"""
+PYTHONPATH=/usr/local/share/bole/python python3 subscribe_zenoh.py [tcp/127.0.0.1:7447]"""
 
 import sys
 
@@ -7,9 +7,10 @@ import zenoh
 
 from bole import status_t, tree_list_t
 
+endpoint = sys.argv[1] if len(sys.argv) > 1 else "tcp/127.0.0.1:7447"
 config = zenoh.Config()
 config.insert_json5("mode", '"client"')
-config.insert_json5("connect/endpoints", f'["{sys.argv[1]}"]')
+config.insert_json5("connect/endpoints", f'["{endpoint}"]')
 with zenoh.open(config) as session:
     subscriber = session.declare_subscriber("bole/*/*/*")
     for sample in subscriber:
@@ -22,5 +23,7 @@ with zenoh.open(config) as session:
         if key.endswith("/status"):
             print(key, "state", message.state, message.state_reason, message.degraded_reason)
             continue
+        if message.flags & tree_list_t.FLAG_DEGRADED:
+            print(key, "the camera cannot see well: no tree listed means nothing")
         for tree in message.trees:
             print(f"#{tree.id}: {tree.bearing:+.3f} rad, {tree.range:.2f} +- {tree.range_sigma:.2f} m")

@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -10,9 +11,19 @@
 namespace bole {
 namespace {
 
+namespace fs = std::filesystem;
+
+// That of the source tree where we stand in it, else the installed one.
+std::string example_camera() {
+  const fs::path file = "calib/example/camera.toml";
+  if (fs::exists(file)) return file;
+  return fs::read_symlink("/proc/self/exe").parent_path().parent_path() / BOLE_DATADIR / "bole" /
+         file;
+}
+
 struct SimCommand {
   std::string out;
-  std::string camera = "calib/example/camera.toml";
+  std::string camera = example_camera();
   std::string preset = "drive";
   std::string impairment;
   simulate::RecordingOptions recording;
