@@ -17,8 +17,8 @@ inline Vec3 normalized(const Vec3& a) {
   return {a.x / n, a.y / n, a.z / n};
 }
 
-/// A 3x3 matrix by rows; orthonormal wherever it is used here (a reflection included, for cameras
-/// that see a mirrored world), so that its transpose is its inverse.
+/// A 3x3 matrix by rows. Of a rotation, or a reflection for cameras that see a mirrored world, the
+/// transpose is the inverse; covariances are symmetric.
 struct Mat3 {
   std::array<Vec3, 3> rows{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
 };

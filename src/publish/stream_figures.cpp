@@ -10,16 +10,23 @@ namespace {
 
 double ms(std::int64_t ns) { return static_cast<double>(ns) / 1e6; }
 
+// Of numbers from the bus, where anybody may have put them: wraps round in place of overflowing.
+std::int64_t difference(std::int64_t a, std::int64_t b) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
+}
+
 }  // namespace
 
 void StreamFigures::add(const tree_list_t& list, std::int64_t arrival_mono_ns) {
   if (lists_ == 0) first_arrival_ns_ = arrival_mono_ns;
-  if (last_seq_ >= 0 && list.seq > last_seq_ + 1) lost_ += list.seq - last_seq_ - 1;
+  if (last_seq_ >= 0 && list.seq > last_seq_) {
+    lost_ = difference(lost_, last_seq_ + 1 - list.seq);
+  }
   if (list.seq <= last_seq_) ++restarts_;
   last_seq_ = list.seq;
   last_arrival_ns_ = arrival_mono_ns;
-  latency_.add(list.publish_mono_ns - list.capture_mono_ns);
-  delivery_.add(arrival_mono_ns - list.publish_mono_ns);
+  latency_.add(difference(list.publish_mono_ns, list.capture_mono_ns));
+  delivery_.add(difference(arrival_mono_ns, list.publish_mono_ns));
   ++lists_;
 }
 

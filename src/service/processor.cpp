@@ -3,13 +3,6 @@
 #include <algorithm>
 
 namespace bole {
-namespace {
-
-// After a gap as long as this (a loop of a replay, a camera that was away) the trees of before say
-// nothing about those of now.
-constexpr double kLongestGap = 2.0;  // seconds
-
-}  // namespace
 
 Processor::Processor(const WarpTable& table, double camera_height, const Search& search,
                      ProcessorOptions options, const Clock& clock)
@@ -45,8 +38,7 @@ void Processor::leave_out_improbable() {
 void Processor::track(std::int64_t captured_ns) {
   const double elapsed =
       static_cast<double>(captured_ns - last_captured_ns_.value_or(captured_ns)) / 1e9;
-  if (last_captured_ns_ && (elapsed <= 0 || elapsed > kLongestGap)) tracker_.reset();
-  tracker_.update(trees_, std::max(elapsed, 0.0));
+  tracker_.update(trees_, elapsed);
   last_captured_ns_ = captured_ns;
   leave_out_improbable();
   leave_out_far();

@@ -1,5 +1,7 @@
 #include "publish/stream_figures.h"
 
+#include <limits>
+
 #include <gmock/gmock.h>
 
 namespace bole {
@@ -25,6 +27,19 @@ TEST(StreamFigures, ARestartedDaemonIsNoLoss) {
   for (const int seq : {5, 6, 0, 1}) figures.add(list_with_seq(seq), 0);
   EXPECT_EQ(figures.lost(), 0);
   EXPECT_THAT(figures.text(), testing::HasSubstr(" 1 restarts"));
+}
+
+TEST(StreamFigures, NumbersThatNobodyCountsToDoNoHarm) {
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  StreamFigures figures;
+  for (const std::int64_t seq : {std::int64_t{0}, kMost, std::int64_t{0}, kMost, -kMost - 1}) {
+    tree_list_t list{};
+    list.seq = seq;
+    list.publish_mono_ns = -kMost - 1;
+    list.capture_mono_ns = kMost;
+    figures.add(list, kMost);
+  }
+  EXPECT_EQ(figures.lists(), 5);
 }
 
 TEST(StreamFigures, RateAndLatencyAreThoseOfTheLists) {
