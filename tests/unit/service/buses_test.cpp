@@ -86,6 +86,7 @@ TEST(Buses, ASlowBusDelaysNoOther) {
   const auto buses = buses_of({&slow, &quick}, WhenFull::overwrite);
   offer(*buses, 1);
   slow.wait_for_messages(1);
+  quick.wait_for_messages(1);
   for (std::size_t size = 2; size <= 5; ++size) {
     offer(*buses, size);
     quick.wait_for_messages(size);
