@@ -72,7 +72,7 @@ void print(const status_t& status) {
               static_cast<double>(status.latency_p99_ms));
 }
 
-// Prints what arrives and keeps the figures of each stream, by its channel or key.
+// Prints what arrives and keeps the figures of each stream, by its channel and camera or its key.
 class Listener {
  public:
   explicit Listener(const ListenOptions& options) : options_(options) {}
@@ -81,7 +81,7 @@ class Listener {
     try {
       if (kind == MessageKind::trees) {
         const tree_list_t list = decode_tree_list(bytes);
-        figures_[stream].add(list, SystemClock().mono_ns());
+        figures_of(stream, list.camera).add(list, SystemClock().mono_ns());
         ++lists_;
         show(list, std::string());
       } else {
@@ -106,6 +106,12 @@ class Listener {
 
  private:
   static constexpr std::size_t kMostNamed = 100;
+
+  // All cameras share LCM's channel, but each counts for itself. A key of Zenoh's names its camera.
+  StreamFigures& figures_of(const std::string& stream, const std::string& camera) {
+    const bool shared = stream == kTreesChannel && figures_.size() < kMostNamed;
+    return figures_[shared ? stream + " " + camera : stream];
+  }
 
   template <typename Message, typename... File>
   void show(const Message& message, const File&... file) {

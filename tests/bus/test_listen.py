@@ -39,6 +39,21 @@ def test_listen_counts_lists_and_losses(programs, drive, lcm_url):
     assert any(line.get("state") == 2 for line in lines)
 
 
+def test_listen_counts_each_camera_by_itself(programs, types, lcm_url):
+    with listening(programs, lcm_url, "--count", "6", "--json") as listener:
+        bus = lcm.LCM(lcm_url)
+        for seq in range(3):
+            for camera, first in [("front", 0), ("rear", 1000)]:
+                message = types.tree_list_t()
+                message.camera, message.seq = camera, first + seq
+                bus.publish("BOLE_TREES", message.encode())
+        text, _ = listener.communicate(timeout=20)
+    summaries = {entry["stream"]: entry["summary"] for entry in map(json.loads, text.splitlines())
+                 if "summary" in entry}
+    assert summaries.keys() == {"BOLE_TREES front", "BOLE_TREES rear"}
+    assert all((s["lists"], s["lost"], s["restarts"]) == (3, 0, 0) for s in summaries.values())
+
+
 def test_listen_survives_and_names_foreign_payloads(programs, types, lcm_url):
     with listening(programs, lcm_url, "--count", "1", "--json") as listener:
         bus = lcm.LCM(lcm_url)
