@@ -1,5 +1,6 @@
 """Programs that run beside a test: boled, and receivers that share no code with it."""
 
+import contextlib
 import json
 import os
 import pathlib
@@ -37,6 +38,16 @@ def eventually(condition, seconds=10):
     while not (result := condition()) and time.monotonic() < end:
         time.sleep(0.01)
     return result
+
+
+@contextlib.contextmanager
+def running(command, **options):
+    """A process that is killed when the `with` is left: a test that fails must not wait for it."""
+    with subprocess.Popen(command, **options) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
 
 
 class Daemon:

@@ -8,22 +8,18 @@ import subprocess
 import time
 
 import lcm
-from processes import eventually
+from processes import eventually, running
 
 
 @contextlib.contextmanager
 def listening(programs, lcm_url, *arguments):
-    """bolectl listen from when it has subscribed on; killed at the end, whatever it still waits for."""
+    """bolectl listen from when it has subscribed on."""
     port = f":{int(re.search(r':([0-9]+)', lcm_url)[1]):04X} "
     command = [programs / "bolectl", "listen", "--lcm", lcm_url, *arguments]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                          text=True) as listener:
-        try:
-            assert eventually(lambda: port in pathlib.Path("/proc/net/udp").read_text())
-            time.sleep(0.5)  # LCM tries its own socket first
-            yield listener
-        finally:
-            listener.kill()
+    with running(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as listener:
+        assert eventually(lambda: port in pathlib.Path("/proc/net/udp").read_text())
+        time.sleep(0.5)  # LCM tries its own socket first
+        yield listener
 
 
 def test_listen_counts_lists_and_losses(programs, drive, lcm_url):

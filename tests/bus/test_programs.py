@@ -8,7 +8,7 @@ import subprocess
 import time
 
 import pytest
-from processes import free_endpoint
+from processes import free_endpoint, running
 
 
 @pytest.mark.parametrize("program", ["boled", "bolectl", "bolectl detect", "bolectl lut info"])
@@ -78,7 +78,7 @@ def test_boled_names_no_folder_of_the_crates_that_it_was_built_from(programs):
 def test_boled_uses_little_memory_and_ends_at_sigterm(programs, drive):
     command = [programs / "boled", "--camera", drive / "camera.toml", "--source", f"replay:{drive}",
                "--pace", "rate:30", "--loop", "--publish", "jsonl:/dev/null"]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as daemon:
+    with running(command, stderr=subprocess.PIPE, text=True) as daemon:
         time.sleep(3)
         status = pathlib.Path(f"/proc/{daemon.pid}/status").read_text()
         daemon.terminate()
@@ -92,7 +92,7 @@ def test_realtime_priority_is_that_of_all_but_processing_which_yields_to_them(pr
     command = [programs / "boled", "--camera", drive / "camera.toml", "--source", f"replay:{drive}",
                "--loop", "--publish", "lcm,zenoh", "--set", "service.realtime_priority=7", "--set",
                f'zenoh.listen=["{free_endpoint()}"]']
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as daemon:
+    with running(command, stderr=subprocess.PIPE, text=True) as daemon:
         time.sleep(1)
         threads = [stat.read_text().rpartition(") ")[2].split()
                    for stat in pathlib.Path(f"/proc/{daemon.pid}/task").glob("*/stat")]

@@ -7,6 +7,7 @@ import time
 
 import lcm
 import pytest
+from processes import running
 
 
 def lists(text):
@@ -56,7 +57,7 @@ def test_realtime_publishes_every_frame_on_lcm_as_jsonl_has_it(
     command = [programs / "boled", "--camera", drive / "camera.toml", "--source", f"replay:{drive}",
                "--pace", "realtime", "--publish", f"lcm,jsonl:{written}", "--set",
                f"lcm.url={lcm_url}"]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as daemon:
+    with running(command, stderr=subprocess.PIPE, text=True) as daemon:
         received = {message.seq: message for message in receiver.receive(20, 10)}
         log = daemon.communicate(timeout=20)[1]
     assert daemon.returncode == 0
@@ -110,7 +111,7 @@ def test_a_full_disk_is_told_once_and_no_success_in_lockstep(boled):
 def test_a_reader_that_stops_does_not_keep_boled_from_ending(programs, drive):
     command = [programs / "boled", "--camera", drive / "camera.toml", "--source", f"replay:{drive}",
                "--pace", "fast", "--loop", "--publish", "jsonl:-"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as daemon:
+    with running(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as daemon:
         daemon.stdout.readline()
         time.sleep(1)  # the pipe fills
         daemon.terminate()
