@@ -112,13 +112,21 @@ RangeEstimate RangePosterior::estimate(const TrunkSight& sight) const {
 double RangePosterior::half_of_95_percent(const Points& p, double mean, double mass) {
   std::array<std::pair<double, double>, kSteps> by_deviation;  // deviation, weight
   for (int i = 0; i < kSteps; ++i) by_deviation[i] = {std::abs(p.log_range[i] - mean), p.weight[i]};
-  std::sort(by_deviation.begin(), by_deviation.end());
-  double within = 0;
-  for (const auto& [deviation, weight] : by_deviation) {
-    within += weight;
-    if (within >= 0.95 * mass) return deviation / 2;
+  // Sorted only as far as it takes.
+  auto first = by_deviation.begin(), last = by_deviation.end();
+  for (double outside = 0.95 * mass; last - first > 1;) {
+    const auto middle = first + (last - first) / 2;
+    std::nth_element(first, middle, last);
+    const double nearer = std::accumulate(
+        first, middle, 0.0, [](double sum, const auto& point) { return sum + point.second; });
+    if (nearer >= outside) {
+      last = middle;
+    } else {
+      outside -= nearer;
+      first = middle;
+    }
   }
-  return by_deviation.back().first / 2;
+  return first->first / 2;
 }
 
 }  // namespace bole

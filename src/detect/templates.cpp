@@ -1,6 +1,7 @@
 #include "detect/templates.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -161,13 +162,21 @@ void Templates::pad(std::int16_t* evidence, int count) const {
   }
 }
 
-// Whether a template of the neighbouring size, about the same centre, has more evidence.
-bool Templates::beaten_by(int size_index, int polarity, double centre, int evidence) const {
-  const Size& size = sizes_[size_index];
-  const int step = flanks_[size.flank].step;
-  const int place = rounded((centre - size.width * 0.5) / step);
-  const std::int16_t* at = peaks_[polarity][size_index].evidence.data() + pad_ + place;
-  return std::max({at[-1], at[0], at[1]}) > evidence;
+// Templates of another size about the same centres as those of `size`; none beyond the sizes.
+Templates::Neighbour Templates::neighbour(int size_index, int polarity, const Size& size) const {
+  if (size_index < 0 || size_index >= static_cast<int>(sizes_.size())) return {};
+  const Size& other = sizes_[size_index];
+  const int step = flanks_[other.flank].step;
+  return {.evidence = peaks_[polarity][size_index].evidence.data() + pad_,
+          .offset = size.width - other.width + step,
+          .shift = std::countr_zero(static_cast<unsigned>(2 * step))};
+}
+
+// Whether the template nearest to the same centre, or one beside it, has more evidence.
+bool Templates::Neighbour::beats(int left, int evidence_there) const {
+  if (!evidence) return false;
+  const std::int16_t* at = evidence + ((2 * left + offset) >> shift);
+  return std::max({at[-1], at[0], at[1]}) > evidence_there;
 }
 
 void Templates::collect(int size_index, int polarity) {
@@ -177,13 +186,11 @@ void Templates::collect(int size_index, int polarity) {
   const int reach = std::max(1, static_cast<int>(0.15 * size.width) / step);
   const std::int16_t* at = peaks.evidence.data() + pad_;
   const int count = find_peaks(at, width_ / step, kLeastEvidence, reach, places_.data());
+  const Neighbour narrower = neighbour(size_index - 1, polarity, size);
+  const Neighbour wider = neighbour(size_index + 1, polarity, size);
   for (const int i : std::span(places_).first(count)) {
     const int evidence = at[i];
-    const double centre = i * step + size.width * 0.5;
-    if (size_index > 0 && beaten_by(size_index - 1, polarity, centre, evidence)) continue;
-    if (size_index + 1 < static_cast<int>(sizes_.size()) &&
-        beaten_by(size_index + 1, polarity, centre, evidence))
-      continue;
+    if (narrower.beats(i * step, evidence) || wider.beats(i * step, evidence)) continue;
     if (found_.size() == found_.capacity()) return;
     found_.push_back({static_cast<float>(i * step), static_cast<float>(size.width),
                       static_cast<float>(peaks.foot[i] * Bands::kRows), polarity == 0,

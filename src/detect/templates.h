@@ -60,12 +60,18 @@ class Templates {
     std::vector<std::int16_t> foot;
   };
 
+  struct Neighbour {  // evidence at column x of left edges: 2 x + offset, shifted right
+    const std::int16_t* evidence = nullptr;
+    int offset = 0, shift = 0;
+    bool beats(int left, int evidence_there) const;
+  };
+
   void add_flank(const Bands& bands, int width);
   void respond(const Bands& bands, const Flank& flank);
   void accumulate(int size_index);
   void pad(std::int16_t* evidence, int count) const;
   void collect(int size_index, int polarity);
-  bool beaten_by(int size_index, int polarity, double centre, int evidence) const;
+  Neighbour neighbour(int size_index, int polarity, const Size& size) const;
   int part_of(float column) const;
   bool has_twin(const Candidate& candidate) const;
   void thin_out();

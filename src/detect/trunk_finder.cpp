@@ -11,7 +11,7 @@ namespace {
 constexpr float kWorthOtherFeet = -5.0F;  // logit: with a wrong foot a trunk looks like none
 constexpr float kWorthAnswering = -3.5F;  // logit
 constexpr float kFarBetter = 3.0F;        // of two logits: the second look seldom turns them round
-constexpr float kSure = 4.0F;             // logit
+constexpr float kSure = 2.0F;             // logit
 constexpr float kHopeless = -99;          // logit
 
 // The farther the search goes, the more trunks there are.
