@@ -100,7 +100,7 @@ Templates::Templates(const DetectorSetup& setup, const Bands& bands, int most_ca
 
 void Templates::add_flank(const Bands& bands, int width) {
   static_assert(kWidestFlank <= Bands::kMostFlank);
-  const int step = width >= 18 ? 4 : width >= 8 ? 2 : 1;
+  const int step = width >= 12 ? 4 : width >= 8 ? 2 : 1;
   Flank flank{.width = width,
               .step = step,
               .pitch = (width_ + widest_ + 8) / step + 2 * kTemplateChunk,
