@@ -80,26 +80,36 @@ MotionEstimate Tracker::prior(double elapsed) const {
 std::span<const int> Tracker::match(std::span<const Tree> trees, const MotionEstimate& motion) {
   costs_.assign(trees.size() * tracks_.size(), Assignment::kForbidden);
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
+    const Place place = place_of(tracks_[k], motion);
     for (std::size_t i = 0; i < trees.size(); ++i) {
-      costs_[i * tracks_.size() + k] = cost_of(trees[i], tracks_[k], motion);
+      costs_[i * tracks_.size() + k] = cost_of(trees[i], tracks_[k], place, motion);
     }
   }
   return assignment_.solve(costs_, static_cast<int>(trees.size()), static_cast<int>(tracks_.size()),
                            2 * kGate);
 }
 
-double Tracker::cost_of(const Tree& tree, const Track& track, const MotionEstimate& motion) {
+Tracker::Place Tracker::place_of(const Track& track, const MotionEstimate& motion) {
   const GroundPoint at = moved(track.position(), motion.mean);
   const double range = std::hypot(at.x, at.y);
-  const double turn = wrap_angle(tree.bearing - std::atan2(at.y, at.x));
-  const double width = angular_width(track.diameter(), range);
+  return {.range = range,
+          .bearing = std::atan2(at.y, at.x),
+          .width = angular_width(track.diameter(), range),
+          .step = farthest_step(range),
+          .slack = motion.forward_sigma + motion.turn_sigma * range};
+}
+
+double Tracker::cost_of(const Tree& tree, const Track& track, const Place& place,
+                        const MotionEstimate& motion) {
+  const auto [range, bearing, width, farthest, slack] = place;
+  const double turn = wrap_angle(tree.bearing - bearing);
+  const double way = squared(tree.range - range) + squared(turn * range);
+  if (way > squared(kFartherIfSame * farthest + slack)) return Assignment::kForbidden;
   const double ratio = std::log(std::max(tree.angular_width, 0.001F) / width) / kWidthSpread;
   // What stays in its place and keeps its width is one tree, whatever foot is found.
   const bool same = track.unseen() < kJustSeen && std::abs(turn) < kSamePlace * width &&
                     std::abs(ratio) < kSameWidth;
-  const double reach = (same ? kFartherIfSame : 1) * farthest_step(range) + motion.forward_sigma +
-                       motion.turn_sigma * range;
-  if (std::hypot(tree.range - range, turn * range) > reach) return Assignment::kForbidden;
+  if (way > squared((same ? kFartherIfSame : 1) * farthest + slack)) return Assignment::kForbidden;
   const Track::Expectation expected = track.expect(tree);
   const double step = tree.range - range - (expected.range - track.range());
   const double shift = squared(std::max(motion.forward_sigma, motion.left_sigma));

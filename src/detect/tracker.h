@@ -42,7 +42,14 @@ class Tracker {
   MotionEstimate estimate(std::span<const Tree> trees, const MotionEstimate& prior);
   /// The track of each tree, -1 for none, if the robot has moved by `motion`, within its sigmas.
   std::span<const int> match(std::span<const Tree> trees, const MotionEstimate& motion);
-  static double cost_of(const Tree& tree, const Track& track, const MotionEstimate& motion);
+  /// Where a track's tree should be seen, and how far from there it may be at most.
+  struct Place {
+    double range, bearing, width;
+    double step, slack;
+  };
+  static Place place_of(const Track& track, const MotionEstimate& motion);
+  static double cost_of(const Tree& tree, const Track& track, const Place& place,
+                        const MotionEstimate& motion);
   /// The track that a sighting, paired with `track` (-1: none), is part of.
   int whole(const Tree& part, int track);
 

@@ -8,7 +8,7 @@
 namespace bole {
 namespace {
 
-constexpr int kRowStep = 6, kColumnStep = 2;
+constexpr int kRowStep = 6, kColumnStep = 4;
 constexpr int kFramesToTell = 3;
 constexpr int kRepeatsOfFrozen = 3;
 
