@@ -1,6 +1,7 @@
 #include "service/make_source.h"
 
 #include <string_view>
+#include <utility>
 
 #include "base/errors.h"
 #include "capture/libcamera/libcamera.h"
@@ -39,11 +40,25 @@ SourceSetup make_replay(const DaemonConfig::SourcePart& part, const std::string&
   return setup;
 }
 
+void refuse_replay_settings(const DaemonConfig& config) {
+  const DaemonConfig::SourcePart& set = config.source;
+  const DaemonConfig::SourcePart usual;
+  for (const auto& [key, differs] :
+       {std::pair{"pace", set.pace != usual.pace}, std::pair{"loop", set.loop},
+        std::pair{"restamp", set.restamp}, std::pair{"start_s", set.start != usual.start},
+        std::pair{"end_s", set.end != usual.end}, std::pair{"faults", !set.faults.empty()}}) {
+    if (!differs) continue;
+    throw ConfigError(config.file, std::string("source.") + key,
+                      "is only for a replay, but the source is " + set.uri, "leave it out");
+  }
+}
+
 // `make`: make_v4l2_source or make_libcamera_source.
 template <class Make>
-SourceSetup make_camera(const DaemonConfig::SourcePart& part, const std::string& name,
-                        const Camera& camera, ListSource kind, Make make) {
-  CameraSettings settings = part.camera;
+SourceSetup make_camera(const DaemonConfig& config, const std::string& name, const Camera& camera,
+                        ListSource kind, Make make) {
+  refuse_replay_settings(config);
+  CameraSettings settings = config.source.camera;
   settings.size = camera.model->image_size();
   SourceSetup setup;
   setup.kind = kind;
@@ -61,10 +76,10 @@ SourceSetup make_source(const DaemonConfig& config, const Camera& camera) {
   const std::string rest = colon == std::string::npos ? "" : uri.substr(colon + 1);
   if (scheme == "replay" && !rest.empty()) return make_replay(config.source, rest, camera);
   if (scheme == "v4l2" && !rest.empty()) {
-    return make_camera(config.source, rest, camera, ListSource::v4l2, make_v4l2_source);
+    return make_camera(config, rest, camera, ListSource::v4l2, make_v4l2_source);
   }
   if (scheme == "libcamera" && !rest.empty()) {
-    return make_camera(config.source, rest, camera, ListSource::libcamera, make_libcamera_source);
+    return make_camera(config, rest, camera, ListSource::libcamera, make_libcamera_source);
   }
   throw ConfigError(config.file, "source.uri", uri.empty() ? "is missing" : "is \"" + uri + "\"",
                     "must be v4l2:DEVICE, libcamera:ID or replay:PATH");

@@ -5,6 +5,8 @@
 #include <future>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <system_error>
 #include <thread>
 
 #include "base/errors.h"
@@ -89,7 +91,27 @@ void copy_camera(const std::filesystem::path& folder, const Camera& camera) {
   const auto from = camera.file.parent_path();
   write_text(folder / "camera.toml", camera.config_text);
   for (const std::string& name : {camera.config.calibration, camera.config.mask}) {
-    if (!name.empty()) write_file_atomically(folder / name, read_file(from / name, kLargest));
+    const std::filesystem::path path(name);
+    if (path.empty() || path.is_absolute()) continue;  // which is found from anywhere
+    if (*path.lexically_normal().begin() == "..") {
+      throw ConfigError(camera.file, "", name + " lies outside of its folder, which is copied",
+                        "put it beside camera.toml");
+    }
+    write_file_atomically(folder / path, read_file(from / path, kLargest));
+  }
+}
+
+// A replay would take frames of an earlier recording for frames of this one.
+void refuse_other_frames(const std::filesystem::path& folder, const RecordingOptions& options) {
+  std::set<std::string> ours;
+  for (int k = 0; k < options.frames; ++k) ours.insert(frame_name(k, options.format));
+  std::error_code not_there;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, not_there)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("frame_") && !ours.contains(name)) {
+      throw ConfigError(folder, "", "holds " + name + " of another recording",
+                        "remove its frames, or name another folder");
+    }
   }
 }
 
@@ -126,6 +148,7 @@ std::string truth_json(const CameraConfig& config, const std::vector<FrameTruth>
 void record(const std::filesystem::path& folder, const Camera& camera,
             const RecordingOptions& options, const std::function<void(int)>& progress) {
   const Encoder encoder(options.format, camera.model->image_size());
+  refuse_other_frames(folder, options);
   copy_camera(folder, camera);
   std::vector<FrameTruth> truths(static_cast<std::size_t>(options.frames));
   std::mutex mutex;

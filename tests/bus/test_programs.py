@@ -42,6 +42,7 @@ def test_wrong_usage_of_bolectl_is_one_short_line(bolectl, arguments, named):
     (["--nonsense"], "--nonsense"),
     (["--publish", "lcm,lcm"], "publish.to"),
     (["--set", 'source.uri="tape"'], "source.uri"),
+    (["--set", 'source.uri="v4l2:/dev/video9"', "--loop"], "source.loop"),
 ])
 def test_wrong_usage_is_one_line_and_exit_code_2(boled, arguments, named):
     run = boled(*arguments)
@@ -121,6 +122,16 @@ def test_lut_builds_a_table_that_fits_its_camera_only_and_whole(bolectl, drive, 
     refused = bolectl("lut", "info", "--camera", camera, table)
     assert refused.returncode == 2
     assert str(table) in refused.stderr and refused.stderr.count("\n") == 1
+
+
+def test_sim_leaves_no_frames_of_two_recordings_in_one_folder(bolectl, tmp_path):
+    camera = pathlib.Path(__file__).parents[1] / "hil/cameras/640x480/camera.toml"
+    common = ["sim", "--out", tmp_path, "--seed", "1", "--camera", camera, "--frames"]
+    assert bolectl(*common, "2").returncode == 0
+    assert bolectl(*common, "2").returncode == 0
+    shorter = bolectl(*common, "1")
+    assert shorter.returncode == 2
+    assert "frame_000001.jpg" in shorter.stderr and shorter.stderr.count("\n") == 1
 
 
 def test_doctor_says_what_is_well_and_what_mends_the_rest(bolectl, drive):

@@ -56,6 +56,7 @@ TEST(GrabFrame, TellsWhyThereIsNone) {
   DaemonConfig config = config_for(folder.write("in.yuyv", "short"));
   EXPECT_THROW(grab_frame(config, folder / "out"), ConfigError);
   config.source.uri = "v4l2:/dev/no-such-camera";
+  config.source.pace = "realtime";
   EXPECT_THROW(grab_frame(config, folder / "out"), CaptureError);
   EXPECT_FALSE(std::filesystem::exists(folder / "out.yuyv"));
 }
