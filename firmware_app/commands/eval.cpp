@@ -33,13 +33,21 @@ class DriveTracker {
                                             : Tracker::Scores::ranks),
         least_score_(mode == DetectorMode::bole ? 0 : min_score) {}
 
-  std::vector<Tree> update(const TruthFrame& frame, std::vector<Tree> trees) {
-    std::erase_if(trees, [&](const Tree& tree) { return tree.score < least_score_; });
-    trees.resize(std::min(trees.size(), Tracker::kMostTrees));
+  /// `alone`: the picture's trees by itself.
+  std::vector<Tree> detect(ImageDetector& detector, const TruthFrame& frame,
+                           const cv::Mat3b& picture, const std::vector<Tree>& alone) {
     if (frame.world != world_ || frame.utime <= utime_) tracker_.reset();
-    tracker_.update(trees, static_cast<double>(frame.utime - utime_) * 1e-6);
+    const double elapsed = static_cast<double>(frame.utime - utime_) * 1e-6;
     world_ = frame.world;
     utime_ = frame.utime;
+    std::vector<Tree> trees = alone;
+    if (const auto expected = tracker_.expected(elapsed); !expected.empty()) {
+      const std::span<const Tree> found = detector.detect(picture, expected);
+      trees.assign(found.begin(), found.end());
+    }
+    std::erase_if(trees, [&](const Tree& tree) { return tree.score < least_score_; });
+    trees.resize(std::min(trees.size(), Tracker::kMostTrees));
+    tracker_.update(trees, elapsed);
     return trees;
   }
 
@@ -57,9 +65,11 @@ Run run(ImageDetector& detector, DetectorMode mode, const Truth& truth, const Op
   for (const TruthFrame& frame : truth.frames) {
     const fs::path file = fs::path(options.folder) / frame.file;
     try {
-      const std::span<const Tree> trees = detector.detect(read_picture(file));
-      result.detections[frame.file].assign(trees.begin(), trees.end());
-      result.tracked[frame.file] = tracker.update(frame, result.detections[frame.file]);
+      const cv::Mat3b picture = read_picture(file);
+      const std::span<const Tree> trees = detector.detect(picture);
+      std::vector<Tree>& alone = result.detections[frame.file];
+      alone.assign(trees.begin(), trees.end());
+      result.tracked[frame.file] = tracker.detect(detector, frame, picture, alone);
     } catch (const std::runtime_error& error) {
       throw ConfigError(file.string(), "", error.what(), "every frame of the truth is needed");
     }

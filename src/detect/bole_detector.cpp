@@ -14,6 +14,7 @@ namespace {
 
 constexpr float kLeastScore = 0.05F;
 constexpr float kHardly = 0.02F;  // probability that is not worth a place
+constexpr std::size_t kMostExpected = 64;
 constexpr float kWitness = 0.3F;  // probability of a trunk that tells of the ground's tilt
 
 float probability(double logit) { return static_cast<float>(1 / (1 + std::exp(-logit))); }
@@ -36,13 +37,17 @@ class BoleDetector final : public Detector {
         range_(setup.height, setup.search),
         tilt_(setup.height),
         finder_(setup) {
+    outlines_.reserve(2 * kMostExpected);
     trees_.reserve(256);
     witnesses_.reserve(256);
   }
 
-  std::span<const Tree> detect(const PanoramaView& panorama) override {
+ private:
+  std::span<const Tree> find(const PanoramaView& panorama,
+                             std::span<const ExpectedTrunk> expected) override {
     trees_.clear();
-    const std::span<const Trunk> trunks = finder_.find(panorama);
+    outline(expected);
+    const std::span<const Trunk> trunks = finder_.find(panorama, outlines_);
     const GroundTilt tilt = tilt_of(trunks);
     double seen = 0;
     for (const Trunk& trunk : trunks) {
@@ -60,7 +65,7 @@ class BoleDetector final : public Detector {
     return trees_;
   }
 
- private:
+  void outline(std::span<const ExpectedTrunk> expected);
   TrunkSight sight_of(const Trunk& trunk) const;
   GroundTilt tilt_of(std::span<const Trunk> trunks);
   Tree tree_of(const Trunk& trunk, const GroundTilt& tilt) const;
@@ -70,9 +75,26 @@ class BoleDetector final : public Detector {
   RangePosterior range_;
   TiltEstimator tilt_;
   TrunkFinder finder_;
+  std::vector<Candidate> outlines_;  // of the trunks that are expected
   std::vector<TiltWitness> witnesses_;
   std::vector<Tree> trees_;
 };
+
+// As dark trunks and as bright ones: which they are may change with the light.
+void BoleDetector::outline(std::span<const ExpectedTrunk> expected) {
+  outlines_.clear();
+  for (const ExpectedTrunk& trunk : expected.first(std::min(expected.size(), kMostExpected))) {
+    const double width = trunk.angular_width * panorama_.focal();
+    const double middle = panorama_.column_of_bearing(trunk.bearing) + 0.5;
+    const double foot = panorama_.row_of_tangent(std::tan(trunk.base_elevation)) + 0.5;
+    for (const bool dark : {true, false}) {
+      outlines_.push_back({.left = static_cast<float>(middle - width / 2),
+                           .width = static_cast<float>(width),
+                           .foot = static_cast<float>(std::clamp(foot, 0.0, 1.0 * panorama_.rows)),
+                           .dark = dark});
+    }
+  }
+}
 
 TrunkSight BoleDetector::sight_of(const Trunk& trunk) const {
   const double focal = panorama_.focal();

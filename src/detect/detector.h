@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 
+#include "detect/expected_trunk.h"
 #include "detect/tree.h"
 #include "geometry/camera_config.h"
 #include "geometry/panorama_view.h"
@@ -22,15 +23,22 @@ struct DetectorSetup {
 enum class DetectorMode { paper, bole };
 std::optional<DetectorMode> detector_mode_from_name(std::string_view name);
 
-/// Finds trunks in one panorama after the other, each by itself. Not for use by two threads at
-/// once.
+/// Finds trunks in one panorama after the other. Not for use by two threads at once.
 class Detector {
  public:
   virtual ~Detector() = default;
 
   /// The trunks of one panorama of the setup's geometry, best score first; valid until the next
-  /// call. Allocates nothing once it has seen a few frames.
-  virtual std::span<const Tree> detect(const PanoramaView& panorama) = 0;
+  /// call. Allocates nothing once it has seen a few frames. Where trunks are `expected` it looks
+  /// once more, if it can; what it answers is what this panorama shows.
+  std::span<const Tree> detect(const PanoramaView& panorama,
+                               std::span<const ExpectedTrunk> expected = {}) {
+    return find(panorama, expected);
+  }
+
+ private:
+  virtual std::span<const Tree> find(const PanoramaView& panorama,
+                                     std::span<const ExpectedTrunk> expected) = 0;
 };
 
 /// `paper`: Lu and Rasmussen's contrast templates, as a reference. `bole`: the product.

@@ -21,7 +21,8 @@ PaperDetector::PaperDetector(const DetectorSetup& setup)
   trees_.reserve(most);
 }
 
-std::span<const Tree> PaperDetector::detect(const PanoramaView& panorama) {
+std::span<const Tree> PaperDetector::find(const PanoramaView& panorama,
+                                          std::span<const ExpectedTrunk> /*expected*/) {
   ColumnSums& rows = scores_.rows();
   rows.begin();
   rows.add_rows(panorama.pixels, panorama.stride, setup_.panorama.rows);

@@ -15,13 +15,16 @@ namespace {
 constexpr double kLasting = 0.75, kFleeting = 0.7;
 constexpr double kLastingSeconds = 3.0;
 // Bearings and widths err alike in frames that follow each other: so many sightings count for one.
-constexpr double kAlikeBearings = 8.0, kAlikeWidths = 3.0;
+constexpr double kAlikeBearings = 4.0, kAlikeWidths = 3.0;
 // The robot's way is known from the trees alone, and its length no better than this share.
 constexpr double kScale = 0.04;
-constexpr double kOutlier = 4.0;  // squared misfit, in variances, that halves a sighting's weight
+constexpr float kCredible = 0.2F;  // probability
+constexpr double kNewDrop = 0.5;   // share of a new foot in the expected one
+constexpr double kOutlier = 4.0;   // squared misfit, in variances, that halves a sighting's weight
 
 double squared(double x) { return x * x; }
 
+double foot_distance(double range, double diameter) { return std::max(range - diameter / 2, 0.1); }
 double bearing_variance(const Tree& tree) { return squared(std::max(tree.bearing_sigma, 0.003F)); }
 double range_sigma(const Tree& tree) { return std::max(tree.range_sigma, 0.01F * tree.range); }
 // Of the diameter as the width alone tells it, were the range known.
@@ -47,8 +50,23 @@ Track::Track(std::int32_t id, Tree& tree)
   covariance_ = {{Vec3{c * c * along + s * s * across, c * s * (along - across), c * both},
                   Vec3{c * s * (along - across), s * s * along + c * c * across, s * both},
                   Vec3{c * both, s * both, lasting}}};
+  drop_ = drop_of(tree);
   tree.id = id_;
   tree.score = score_.update(tree.score, 0);
+}
+
+// At the side of the trunk that is seen. Grass or a slope at the foot is in it and stays with the
+// tree.
+double Track::drop_of(const Tree& tree) const {
+  return -std::tan(tree.base_elevation) * foot_distance(range(), diameter_);
+}
+
+ExpectedTrunk Track::after(const EgoMotion& motion) const {
+  const GroundPoint at = moved(position(), motion);
+  const double range = std::hypot(at.x, at.y);
+  return {.bearing = static_cast<float>(std::atan2(at.y, at.x)),
+          .base_elevation = static_cast<float>(std::atan(-drop_ / foot_distance(range, diameter_))),
+          .angular_width = static_cast<float>(angular_width(diameter_, range))};
 }
 
 Vec3 Track::bearing_gradient() const {
@@ -73,6 +91,7 @@ void Track::move(const MotionEstimate& motion, double elapsed) {
   y.y += noise;
   u.z += squared(kLasting) * (1 - kept * kept);
   unseen_ += elapsed;
+  doubtful_ += elapsed;
 }
 
 Track::Expectation Track::expect(const Tree& tree) const {
@@ -111,6 +130,9 @@ void Track::see(Tree& tree) {
   diameter_variance_ = (1 - gain) * diameter_variance_ + squared(0.001);
 
   tree.score = score_.update(tree.score, unseen_);
+  drop_ += kNewDrop * (drop_of(tree) - drop_);
+
+  if (tree.score > kCredible) doubtful_ = 0;
   unseen_ = 0;
   write(tree);
 }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "detect/ego_motion.h"
+#include "detect/expected_trunk.h"
 #include "detect/track_score.h"
 #include "detect/tree.h"
 #include "geometry/rotation.h"
@@ -39,16 +40,22 @@ class Track {
   };
   Expectation expect(const Tree& tree) const;
 
+  /// How it should look after the robot has moved on by `motion`.
+  ExpectedTrunk after(const EgoMotion& motion) const;
+
   std::int32_t id() const { return id_; }
   GroundPoint position() const { return {state_.x, state_.y}; }
   double range() const { return std::hypot(state_.x, state_.y); }
   double diameter() const { return diameter_; }
-  double unseen() const { return unseen_; }  ///< seconds
+  double unseen() const { return unseen_; }      ///< seconds
+  double doubtful() const { return doubtful_; }  ///< seconds since it last looked like a tree
   double sightings() const { return score_.sightings(); }
+  double level() const { return score_.level(); }
   void forget() { unseen_ = std::numeric_limits<double>::infinity(); }
 
  private:
   void write(Tree& tree) const;
+  double drop_of(const Tree& tree) const;
   // Kalman's update by one number, `residual` = seen - expected, that grows by `gradient` with the
   // state.
   void observe(const Vec3& gradient, double residual, double variance);
@@ -59,7 +66,8 @@ class Track {
   Vec3 state_;
   Mat3 covariance_;
   double diameter_, diameter_variance_;
-  double unseen_ = 0;
+  double drop_;  // metres from the viewpoint's height down to the foot as it is seen
+  double unseen_ = 0, doubtful_ = 0;
   TrackScore score_;
 };
 

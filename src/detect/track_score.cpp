@@ -18,12 +18,14 @@ double log_odds(double probability) {
 
 }  // namespace
 
+double TrackScore::level() const { return sum_ / (kDoubt + weight_); }
+
 float TrackScore::update(float score, double elapsed) {
   const double kept = std::exp(-elapsed / kMemory);
   sum_ *= kept;
   weight_ *= kept;
   const double now = log_odds(score);
-  const double odds = kShift + kNow * now + kBefore * sum_ / (kDoubt + weight_);
+  const double odds = kShift + kNow * now + kBefore * level();
   sum_ += now;
   weight_ += 1;
   return static_cast<float>(1 / (1 + std::exp(-odds)));

@@ -19,6 +19,9 @@ class TrackScore {
   /// Number of sightings, the old ones fading.
   double sightings() const { return weight_; }
 
+  /// Of the log odds, as far as the sightings tell it; 0 before the first.
+  double level() const;
+
  private:
   double sum_ = 0, weight_ = 0;
 };

@@ -11,6 +11,8 @@ namespace {
 
 // Seconds a tree may stay unseen and keep its id: the longer, the oftener it was seen.
 constexpr double kForgetAfter = 0.5, kForgetAfterASighting = 0.5, kForgetAtLast = 5.0;
+constexpr double kLookFor = 1.0;       // seconds, where a tree is expected
+constexpr double kFewSightings = 3.0;  // too few to expect it
 constexpr std::size_t kMostTracks = 256;
 constexpr double kGate = 30.0;        // misfit at which a sighting is no more of a track
 constexpr double kAsideGate = 12.0;   // the part of that across the line of sight
@@ -18,7 +20,7 @@ constexpr double kWidthSpread = 0.2;  // of log angular width between two sighti
 constexpr double kPartlySeen = 8.0;   // most that a wrong width costs: half a trunk may be lit
 constexpr double kPartOfWidth = 0.3;  // that its middle is off by then
 constexpr double kJustSeen = 0.3;     // seconds
-constexpr double kSamePlace = 0.15;   // of a tree's width
+constexpr double kSamePlace = 0.3;    // of a tree's width
 constexpr double kSameWidth = 0.75;   // in kWidthSpread
 constexpr double kFartherIfSame = 1.6;
 constexpr double kBeyondEdge = 0.15;   // of a tree's width, that a part of it may stand out
@@ -26,6 +28,12 @@ constexpr double kNearer = 0.6;        // metres that a part of a tree may seem 
 constexpr double kPartOfRange = 0.05;  // that a range is off by when another foot is found
 
 double squared(double x) { return x * x; }
+
+// After longer nothing says how the robot moved.
+bool follows(double elapsed) {
+  constexpr double kLongestStep = 2.0;  // seconds
+  return elapsed > 0 && elapsed <= kLongestStep;
+}
 
 // No two trees this far apart are ever taken for one, however badly their range is known.
 double farthest_step(double range) { return std::max(1.0, 0.25 * range); }
@@ -50,6 +58,7 @@ double faded(double known, double any, double kept) {
 Tracker::Tracker(Scores scores) : scores_(scores) {
   tracks_.reserve(kMostTracks + kMostTrees);
   sightings_.reserve(kMostTrees);
+  expected_.reserve(kMostTrees);
   paired_.reserve(kMostTracks + kMostTrees);
   costs_.reserve(kMostTrees * (kMostTracks + kMostTrees));
   assignment_.reserve(kMostTrees, kMostTracks + kMostTrees);
@@ -122,6 +131,18 @@ double Tracker::cost_of(const Tree& tree, const Track& track, const Place& place
   return aside > kAsideGate || misfit > kGate ? Assignment::kForbidden : misfit + track.unseen();
 }
 
+std::span<const ExpectedTrunk> Tracker::expected(double elapsed) {
+  expected_.clear();
+  if (!follows(elapsed)) return {};
+  const EgoMotion motion = prior(elapsed).mean;
+  for (const Track& track : tracks_) {
+    if (track.sightings() > kFewSightings && track.level() > 0 && track.unseen() < kLookFor &&
+        expected_.size() < kMostTrees)
+      expected_.push_back(track.after(motion));
+  }
+  return expected_;
+}
+
 // Pairs and motion depend on each other: pair with the slack of the prior, estimate, pair anew with
 // the slack of what is then left open.
 MotionEstimate Tracker::estimate(std::span<const Tree> trees, const MotionEstimate& prior) {
@@ -163,8 +184,7 @@ int Tracker::whole(const Tree& part, int track) {
 
 void Tracker::update(std::span<Tree> trees, double elapsed,
                      const std::optional<EgoMotion>& odometry) {
-  constexpr double kLongestStep = 2.0;  // seconds; after longer, nothing says how the robot moved
-  if (!(elapsed > 0) || elapsed > kLongestStep) {
+  if (!follows(elapsed)) {
     reset();
     elapsed = 0;
   }
@@ -195,8 +215,9 @@ void Tracker::update(std::span<Tree> trees, double elapsed,
     if (scores_ == Scores::ranks) trees[i].score = score;
   }
   std::erase_if(tracks_, [](const Track& track) {
-    return track.unseen() >
-           std::min(kForgetAtLast, kForgetAfter + kForgetAfterASighting * track.sightings());
+    return track.doubtful() > kForgetAtLast ||
+           track.unseen() >
+               std::min(kForgetAtLast, kForgetAfter + kForgetAfterASighting * track.sightings());
   });
   if (tracks_.size() > kMostTracks) {  // the longest unseen go first
     std::ranges::nth_element(tracks_, tracks_.begin() + kMostTracks, {}, &Track::unseen);

@@ -7,6 +7,7 @@
 
 #include "detect/assignment.h"
 #include "detect/ego_motion.h"
+#include "detect/expected_trunk.h"
 #include "detect/track.h"
 #include "detect/tree.h"
 
@@ -30,6 +31,10 @@ class Tracker {
   /// nothing for up to kMostTrees. `elapsed`: seconds since the last frame. `odometry`: the motion
   /// since then where it is measured; else it is estimated from the trees themselves.
   void update(std::span<Tree> trees, double elapsed, const std::optional<EgoMotion>& odometry = {});
+
+  /// Where trees that were probable of late should be seen `elapsed` seconds after the last update.
+  /// At most kMostTrees; valid until the next call. Allocates nothing.
+  std::span<const ExpectedTrunk> expected(double elapsed);
 
   /// The motion between the last two frames, as measured or estimated.
   const EgoMotion& last_motion() const { return motion_.mean; }
@@ -62,6 +67,7 @@ class Tracker {
   Assignment assignment_;
   std::vector<double> costs_;
   std::vector<Sighting> sightings_;
+  std::vector<ExpectedTrunk> expected_;
 };
 
 }  // namespace bole

@@ -69,7 +69,8 @@ bool TrunkFinder::glance(const TrunkShape& shape, const EdgeFit& fit,
 
 // Most candidates about a trunk are that trunk seen amiss: those that look best go first, and what
 // one of them explains far better is not looked at again.
-std::span<Trunk> TrunkFinder::find(const PanoramaView& panorama) {
+std::span<Trunk> TrunkFinder::find(const PanoramaView& panorama,
+                                   std::span<const Candidate> expected) {
   sights_.clear();
   for (const Candidate& candidate : candidates(panorama)) {
     Sight sight;
@@ -80,6 +81,7 @@ std::span<Trunk> TrunkFinder::find(const PanoramaView& panorama) {
   trunks_.clear();
   look_again(panorama, sights_);
   look_at_other_feet(panorama);
+  look_where_expected(panorama, expected);
   suppress();
   return kept_;
 }
@@ -185,6 +187,22 @@ void TrunkFinder::look_at_other_feet(const PanoramaView& panorama) {
     }
   }
   glance(others_);
+  keep_best(others_, kWorthASecondLook);
+  look_again(panorama, others_);
+}
+
+void TrunkFinder::look_where_expected(const PanoramaView& panorama,
+                                      std::span<const Candidate> expected) {
+  others_.clear();
+  for (const Candidate& candidate : expected) {
+    const TrunkShape outline{
+        .foot = candidate.foot, .left = candidate.left, .right = candidate.left + candidate.width};
+    if (!readable(outline) || explained(outline, kSure)) continue;
+    Sight sight;
+    if (fit(candidate, sight.trunk.shape, sight.trunk.fit) && others_.size() < others_.capacity())
+      others_.push_back(sight);
+  }
+  look(panorama, others_);
   keep_best(others_, kWorthASecondLook);
   look_again(panorama, others_);
 }

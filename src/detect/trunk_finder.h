@@ -29,8 +29,9 @@ class TrunkFinder {
   explicit TrunkFinder(const DetectorSetup& setup);
 
   /// Trunks that are not out of the question, the better ones first, as to probability and width;
-  /// valid until the next call.
-  std::span<Trunk> find(const PanoramaView& panorama);
+  /// valid until the next call. `expected`: outlines to try where no trunk is found for sure,
+  /// whatever the templates say.
+  std::span<Trunk> find(const PanoramaView& panorama, std::span<const Candidate> expected = {});
 
   /// The steps of find, for the training of the network.
   std::span<const Candidate> candidates(const PanoramaView& panorama);
@@ -65,6 +66,7 @@ class TrunkFinder {
   void look_again(const PanoramaView& panorama, std::span<const Sight> sights);
   void take(const Sight& sight);
   void look_at_other_feet(const PanoramaView& panorama);
+  void look_where_expected(const PanoramaView& panorama, std::span<const Candidate> expected);
   bool explained(const TrunkShape& shape, float logit) const;
   void suppress();
   bool same_pixels(const TrunkShape& a, const TrunkShape& b) const;

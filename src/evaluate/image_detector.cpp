@@ -46,8 +46,9 @@ PanoramaView ImageDetector::warp(const cv::Mat3b& picture) {
                        {Plane{bytes, static_cast<int>(picture.step)}, Plane{}}});
 }
 
-std::span<const Tree> ImageDetector::detect(const cv::Mat3b& picture) {
-  const std::span<const Tree> trees = detector_->detect(warp(picture));
+std::span<const Tree> ImageDetector::detect(const cv::Mat3b& picture,
+                                            std::span<const ExpectedTrunk> expected) {
+  const std::span<const Tree> trees = detector_->detect(warp(picture), expected);
   const auto end = std::find_if(trees.begin(), trees.end(),
                                 [](const Tree& tree) { return tree.score < kLeastScore; });
   return trees.first(static_cast<std::size_t>(end - trees.begin()));

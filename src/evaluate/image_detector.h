@@ -33,7 +33,8 @@ class ImageDetector {
   PanoramaView warp(const cv::Mat3b& picture);
 
   /// The picture's trees with a score of 0.05 or more, best first, until the next call.
-  std::span<const Tree> detect(const cv::Mat3b& picture);
+  std::span<const Tree> detect(const cv::Mat3b& picture,
+                               std::span<const ExpectedTrunk> expected = {});
 
  private:
   Camera camera_;

@@ -35,11 +35,21 @@ void Processor::leave_out_improbable() {
   });
 }
 
-void Processor::track(std::int64_t captured_ns) {
+// Seconds since the last frame.
+double Processor::step_to(std::int64_t captured_ns) {
   const double elapsed =
       static_cast<double>(captured_ns - last_captured_ns_.value_or(captured_ns)) / 1e9;
-  tracker_.update(trees_, elapsed);
   last_captured_ns_ = captured_ns;
+  return elapsed;
+}
+
+std::span<const Tree> Processor::detect(const PanoramaView& panorama, double elapsed) {
+  return options_.track ? detector_->detect(panorama, tracker_.expected(elapsed))
+                        : detector_->detect(panorama);
+}
+
+void Processor::track(double elapsed) {
+  tracker_.update(trees_, elapsed);
   leave_out_improbable();
   leave_out_far();
 }
@@ -59,13 +69,14 @@ Processor::Result Processor::process(const Frame& frame) {
   stepped();
   const PanoramaView panorama = warper_.warp(frame.image());
   stepped();
-  choose(detector_->detect(panorama));
+  result.captured = frame_time(frame.stamp(), clock_);
+  const double elapsed = step_to(result.captured.mono_ns);
+  choose(detect(panorama, elapsed));
   stepped();
   result.vision = vision_.observe(panorama);
   result.brightness = vision_.statistics().mean;
   stepped();
-  result.captured = frame_time(frame.stamp(), clock_);
-  if (options_.track) track(result.captured.mono_ns);
+  if (options_.track) track(elapsed);
   stepped();
 
   list_.utime = result.captured.utc_us;

@@ -54,10 +54,12 @@ class Processor {
   std::int64_t trees_rejected() const { return encoder_.rejected(); }
 
  private:
+  double step_to(std::int64_t captured_ns);
+  std::span<const Tree> detect(const PanoramaView& panorama, double elapsed);
   void choose(std::span<const Tree> found);
   void leave_out_improbable();
   void leave_out_far();
-  void track(std::int64_t captured_ns);
+  void track(double elapsed);
 
   Warper warper_;
   std::unique_ptr<Detector> detector_;

@@ -51,6 +51,60 @@ TEST(BoleDetector, FindsATrunkAcrossTheSeam) {
   EXPECT_EQ(trees.size(), 1U);
 }
 
+// Where a trunk of that kind is expected.
+ExpectedTrunk expected(const PaintedPanorama::Bar& bar) {
+  const double foot = bar.range - bar.diameter / 2;
+  return {.bearing = static_cast<float>(bar.bearing),
+          .base_elevation = static_cast<float>(std::atan(ground_tangent(foot, 1.0))),
+          .angular_width = static_cast<float>(angular_width(bar.diameter, bar.range))};
+}
+
+float score_at(std::span<const Tree> trees, double bearing) {
+  float best = 0;
+  for (const Tree& tree : trees)
+    if (std::abs(wrap_angle(tree.bearing - bearing)) < radians(1))
+      best = std::max(best, tree.score);
+  return best;
+}
+
+TEST(BoleDetector, IsSurerOfTrunksThatItIsToldToExpect) {
+  // Bright before bright ground and nearly as bright as the sky: the templates see half of it.
+  float alone = 0, told = 0;
+  for (int grey = 200; grey <= 250; grey += 10) {
+    PaintedPanorama panorama(usual());
+    const PaintedPanorama::Bar bar{0.5, 4.0, 0.25, grey};
+    panorama.plant(bar);
+    const auto detector = make_bole_detector(panorama.setup());
+    const ExpectedTrunk there = expected(bar);
+    alone += score_at(detector->detect(panorama.view()), bar.bearing);
+    told += score_at(detector->detect(panorama.view(), {&there, 1}), bar.bearing);
+  }
+  EXPECT_GT(told, alone + 0.1F);
+}
+
+TEST(BoleDetector, FindsNothingWhereATrunkIsExpectedAndNoneStands) {
+  PaintedPanorama panorama(usual());
+  const auto detector = make_bole_detector(panorama.setup());
+  for (double bearing = -3.1; bearing < 3.1; bearing += 0.1) {
+    const ExpectedTrunk nothing = expected({bearing, 4.0, 0.3, 0});
+    for (const Tree& tree : detector->detect(panorama.view(), {&nothing, 1}))
+      EXPECT_LT(tree.score, 0.5F) << "at " << tree.bearing;
+  }
+}
+
+TEST(BoleDetector, BearsExpectationsThatLeadOutOfThePanorama) {
+  PanoramaGeometry geometry = usual();
+  geometry.first_column = 700;
+  geometry.width = 300;
+  PaintedPanorama panorama(geometry);
+  const auto detector = make_bole_detector(panorama.setup());
+  std::vector<ExpectedTrunk> wild;
+  for (const float bearing : {-3.1416F, -1.0F, 0.08F, 0.09F, 3.1415F})
+    for (const float elevation : {-1.57F, -1.0F, 0.0F, 0.4F, 1.57F})
+      for (const float width : {0.0F, 0.1F, 3.1F}) wild.push_back({bearing, elevation, width});
+  for (const Tree& tree : detector->detect(panorama.view(), wild)) EXPECT_LT(tree.score, 0.5F);
+}
+
 TEST(BoleDetector, FindsNothingWhereNothingStands) {
   EXPECT_THAT(sure_trees(PaintedPanorama(usual())), testing::IsEmpty());
 }

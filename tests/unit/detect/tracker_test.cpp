@@ -306,6 +306,62 @@ TEST(Tracker, NeverGivesTheIdOfAHiddenTreeToItsNeighbourBehind) {
   EXPECT_NE(behind[0].id, near[0].id);
 }
 
+// A tree that is seen, with this score, in so many frames of a straight drive at 1 m/s, 10 Hz,
+// among others that tell of the motion.
+Tracker tracker_of_a_drive(float score, int frames) {
+  Tracker tracker;
+  for (int frame = 0; frame < frames; ++frame) {
+    std::vector<Tree> trees;
+    for (const double y : {-4.0, -2.0, 2.0, 4.0}) {
+      trees.push_back(seen({9, y, 0.3}, {0.1 * frame, 0, 0}));
+      trees.back().base_elevation = -std::atan(1.0F / (trees.back().range - 0.15F));
+      trees.back().score = score;
+    }
+    tracker.update(trees, frame == 0 ? 0 : 0.1);
+  }
+  return tracker;
+}
+
+TEST(Tracker, ExpectsATreeWhereTheMotionBringsIt) {
+  Tracker tracker = tracker_of_a_drive(0.9F, 30);
+  const Tree next = seen({9, -4, 0.3}, {3.1, 0, 0});  // 0.2 s after the last frame
+  const std::span<const ExpectedTrunk> expected = tracker.expected(0.2);
+  ASSERT_EQ(expected.size(), 4U);
+  EXPECT_NEAR(expected[0].bearing, next.bearing, 0.01);
+  EXPECT_NEAR(expected[0].angular_width, next.angular_width, 0.003);
+  EXPECT_NEAR(std::tan(expected[0].base_elevation), -1 / (next.range - 0.15), 0.005);
+}
+
+TEST(Tracker, ExpectsNoTreeThatIsNewDoubtfulOrLongUnseen) {
+  EXPECT_TRUE(tracker_of_a_drive(0.9F, 2).expected(0.1).empty());
+  EXPECT_TRUE(tracker_of_a_drive(0.3F, 30).expected(0.1).empty());
+  Tracker tracker = tracker_of_a_drive(0.9F, 30);
+  std::vector<Tree> none;
+  for (int frame = 0; frame < 5; ++frame) tracker.update(none, 0.1);
+  EXPECT_EQ(tracker.expected(0.1).size(), 4U);
+  EXPECT_TRUE(tracker.expected(5.0).empty()) << "a gap: nothing says where the robot is";
+  for (int frame = 0; frame < 10; ++frame) tracker.update(none, 0.1);
+  EXPECT_TRUE(tracker.expected(0.1).empty());
+}
+
+TEST(Tracker, GivesNoIdOnThatWasDoubtfulForLong) {
+  // What is hardly a tree is seen on and on, here and there; then a tree stands where it is.
+  Tracker tracker;
+  std::vector<Tree> one{seen({5, 1, 0.3}, {})};
+  tracker.update(one, 0);
+  const std::int32_t first = one[0].id;
+  const auto doubt = [&](int frames) {
+    for (int frame = 0; frame < frames; ++frame) {
+      one[0] = seen({5, 1, 0.3}, {});
+      one[0].score = 0.06F;
+      tracker.update(one, 0.1);
+    }
+    return one[0].id;
+  };
+  EXPECT_EQ(doubt(40), first);
+  EXPECT_NE(doubt(40), first);
+}
+
 TEST(Tracker, ForgetsAfterAJumpOfTimeAndNeverReusesAnId) {
   Tracker tracker;
   std::vector<Tree> one{seen({3, 1, 0.4}, {})};
