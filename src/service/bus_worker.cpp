@@ -32,7 +32,6 @@ BusWorker::BusWorker(std::unique_ptr<Publisher> publisher, WhenFull when_full,
       mailbox_(std::move(bell)) {
   health_.name = publisher_->name();
   health_.healthy = 1;
-  for (Message& message : outgoing_) message.bytes.reserve(kDatagramBytes);
   thread_ = std::thread([this] { run(); });
 }
 
@@ -45,6 +44,7 @@ void BusWorker::offer(MessageKind kind, std::span<const std::byte> bytes, std::s
                       std::int64_t processed_ns, std::int64_t seq) {
   if (!publisher_->carries(kind)) return;
   Message& message = outgoing_.at(slot_of(kind));
+  message.bytes.reserve(kDatagramBytes);  // of each buffer that goes round, once
   message.bytes.assign(bytes.begin(), bytes.end());
   message.file.assign(file);
   message.processed_ns = processed_ns;
