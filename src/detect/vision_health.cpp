@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <numeric>
 
 namespace bole {
@@ -24,13 +25,31 @@ constexpr float kCoveredShare = 0.25F;
 constexpr float kSharpness = 0.15F;  // fine over coarse structure
 constexpr float kSmearedShare = 0.25F;
 
-// The grey level below which `share` of the pixels lie.
-int quantile(const std::array<std::uint32_t, 256>& histogram, double share) {
+using Histogram = std::array<std::uint32_t, 256>;
+
+float share(std::uint32_t part, std::uint32_t of) {
+  return of > 0 ? static_cast<float>(part) / static_cast<float>(of) : 0;
+}
+
+// Of a row's whole words, going on from the rows before.
+std::uint64_t checksum(const std::uint8_t* pixels, int width, std::uint64_t before) {
+  std::uint64_t checksum = before;
+  for (int x = 0; x + 8 <= width; x += 8) {
+    std::uint64_t word;
+    std::memcpy(&word, pixels + x, sizeof word);
+    checksum = (checksum ^ word) * 0x9e3779b97f4a7c15ULL;
+    checksum ^= checksum >> 32;
+  }
+  return checksum;
+}
+
+// The grey level below which `part` of the pixels lie.
+int quantile(const Histogram& histogram, double part) {
   const double total = std::accumulate(histogram.begin(), histogram.end(), 0.0);
   double below = 0;
   for (int level = 0; level < 256; ++level) {
     below += histogram[level];
-    if (below > share * total) return level;
+    if (below > part * total) return level;
   }
   return 255;
 }
@@ -94,20 +113,21 @@ VisionHealth::VisionHealth(const PanoramaGeometry& geometry, const SeenMap& seen
 }
 
 void VisionHealth::measure(const PanoramaView& panorama) {
+  count(panorama);
+  measure_brightness();
+  measure_sectors(panorama);
+}
+
+void VisionHealth::count(const PanoramaView& panorama) {
   const int width = geometry_.width;
   const int horizon = static_cast<int>(std::ceil(geometry_.horizon_row()));
-  std::uint64_t checksum = 0;
-  std::uint32_t ground = 0, saturated_ground = 0;
+  statistics_.checksum = 0;
+  ground_ = saturated_ground_ = 0;
   for (auto& histogram : histograms_) histogram.fill(0);
   for (int row = 0; row < geometry_.rows; row += kRowStep) {
     const std::uint8_t* pixels = panorama.row(row);
     const std::uint8_t* seen = seen_.pixels.data() + static_cast<std::size_t>(row) * width;
-    for (int x = 0; x + 8 <= width; x += 8) {
-      std::uint64_t word;
-      std::memcpy(&word, pixels + x, sizeof word);
-      checksum = (checksum ^ word) * 0x9e3779b97f4a7c15ULL;
-      checksum ^= checksum >> 32;
-    }
+    statistics_.checksum = checksum(pixels, width, statistics_.checksum);
     for (int i = 0; i < kSectors; ++i) {
       auto& histogram = histograms_[i];
       std::uint32_t bright = 0, count = 0;
@@ -118,48 +138,47 @@ void VisionHealth::measure(const PanoramaView& panorama) {
         bright += pixels[x] >= kSaturated;
       }
       if (row < horizon) continue;
-      ground += count;
-      saturated_ground += bright;
+      ground_ += count;
+      saturated_ground_ += bright;
     }
   }
-  std::array<std::uint32_t, 256> all{};
-  for (const auto& histogram : histograms_)
-    for (int level = 0; level < 256; ++level) all[level] += histogram[level];
-  const double total = std::max(1.0, std::accumulate(all.begin(), all.end(), 0.0));
+}
 
-  Statistics& s = statistics_;
-  s.checksum = checksum;
+void VisionHealth::measure_brightness() {
+  Histogram all{};
+  for (const Histogram& histogram : histograms_)
+    std::transform(all.begin(), all.end(), histogram.begin(), all.begin(), std::plus<>());
+  const double total = std::max(1.0, std::accumulate(all.begin(), all.end(), 0.0));
   double sum = 0;
   for (int level = 0; level < 256; ++level) sum += static_cast<double>(level) * all[level];
+  Statistics& s = statistics_;
   s.mean = static_cast<float>(sum / total);
   s.median = static_cast<float>(quantile(all, 0.5));
   s.high = static_cast<float>(quantile(all, 0.95));
   s.saturated =
       static_cast<float>(std::accumulate(all.begin() + kSaturated, all.end(), 0.0) / total);
-  s.saturated_ground =
-      ground > 0 ? static_cast<float>(saturated_ground) / static_cast<float>(ground) : 0;
+  s.saturated_ground = share(saturated_ground_, ground_);
+}
 
+void VisionHealth::measure_sectors(const PanoramaView& panorama) {
   std::array<float, kSectors> spreads;
-  int seen_sectors = 0, even = 0, sharp = 0;
+  std::uint32_t seen = 0, even = 0, sharp = 0;
   for (int i = 0; i < kSectors; ++i) {
     if (!sectors_[i].seen) continue;
     const auto low = static_cast<float>(quantile(histograms_[i], 0.05));
     const auto middle = static_cast<float>(quantile(histograms_[i], 0.5));
     const auto high = static_cast<float>(quantile(histograms_[i], 0.95));
-    spreads[seen_sectors++] = high - low;
+    spreads[seen++] = high - low;
     if (high - low < std::max(kEvenLevels, kEvenSpread * middle)) {
       ++even;
     } else if (sharpness(panorama, seen_, sectors_[i].first, sectors_[i].last) > kSharpness) {
       ++sharp;
     }
   }
-  const auto share = [](int part, int of) {
-    return of > 0 ? static_cast<float>(part) / static_cast<float>(of) : 0.0F;
-  };
-  s.even_sectors = share(even, seen_sectors);
-  s.sharp_sectors = seen_sectors > even ? share(sharp, seen_sectors - even) : 1;
-  std::sort(spreads.begin(), spreads.begin() + seen_sectors);
-  s.contrast = seen_sectors > 0 ? spreads[seen_sectors / 2] : 0;
+  statistics_.even_sectors = share(even, seen);
+  statistics_.sharp_sectors = seen > even ? share(sharp, seen - even) : 1;
+  std::sort(spreads.begin(), spreads.begin() + seen);
+  statistics_.contrast = seen > 0 ? spreads[seen / 2] : 0;
 }
 
 VisionHealth::Reason VisionHealth::judge() {

@@ -11,12 +11,12 @@ namespace bole {
 
 /// Whether a camera can see well enough for its lists to mean something: an empty list from one
 /// that cannot is not 'no trees'. Judged from cheap statistics of the panoramas that detection
-/// works on anyway (every third row and second column of what is seen).
+/// works on anyway (every sixth row and fourth column of what is seen).
 class VisionHealth {
  public:
   enum class Reason : std::uint8_t { none, dark, glare, covered, smeared, frozen };
 
-  /// `seen` must outlive this.
+  /// What `seen` views must outlive this.
   VisionHealth(const PanoramaGeometry& geometry, const SeenMap& seen);
 
   /// What is wrong with the view as of this frame, the gravest reason first. A reason must show in
@@ -48,6 +48,9 @@ class VisionHealth {
 
  private:
   void measure(const PanoramaView& panorama);
+  void count(const PanoramaView& panorama);
+  void measure_brightness();
+  void measure_sectors(const PanoramaView& panorama);
   Reason judge();
 
   struct Sector {
@@ -58,6 +61,7 @@ class VisionHealth {
   SeenMap seen_;
   std::array<Sector, kSectors> sectors_;
   std::array<std::array<std::uint32_t, 256>, kSectors> histograms_{};
+  std::uint32_t ground_ = 0, saturated_ground_ = 0;  // pixels below the horizon
   Statistics statistics_;
   std::uint64_t last_checksum_ = 0;
   int repeats_ = 0;
