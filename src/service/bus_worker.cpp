@@ -83,7 +83,8 @@ void BusWorker::publish(MessageKind kind, const Message& message) {
 
 void BusWorker::record_success(MessageKind kind, std::int64_t handover_ns) {
   const std::lock_guard lock(mutex_);
-  if (std::exchange(failures_in_a_row_, 0) > 0) spdlog::info("{}: publishing again", health_.name);
+  if (!told_.empty()) spdlog::info("{}: publishing again", health_.name);
+  told_.clear();
   health_.healthy = 1;
   if (kind != MessageKind::trees) return;
   ++health_.published;
@@ -93,7 +94,7 @@ void BusWorker::record_success(MessageKind kind, std::int64_t handover_ns) {
 
 void BusWorker::record_failure(MessageKind kind, const std::string& reason) {
   const std::lock_guard lock(mutex_);
-  if (failures_in_a_row_++ == 0 || reason != health_.last_error) {
+  if (told_.insert(reason).second) {
     spdlog::error("{}: {} (tried again with every message)", health_.name, reason);
   }
   health_.healthy = 0;

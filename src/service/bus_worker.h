@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -71,7 +72,7 @@ class BusWorker {
   mutable std::mutex mutex_;  // guards what follows
   bus_t health_{};
   DurationHistogram handover_;
-  std::int64_t failures_in_a_row_ = 0;
+  std::set<std::string> told_;  // reasons of this outage
   bool finished_ = false;
 
   std::thread thread_;

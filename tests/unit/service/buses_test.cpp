@@ -1,6 +1,7 @@
 #include "service/buses.h"
 
 #include <condition_variable>
+#include <regex>
 
 #include <gtest/gtest.h>
 
@@ -136,6 +137,29 @@ TEST(Buses, ARefusalIsAStateAndACounterAndEndsWithTheNextSuccess) {
   while (bus->health()[0].published < 1) std::this_thread::yield();
   EXPECT_EQ(bus->health()[0].healthy, 1);
   EXPECT_EQ(bus->health()[0].failed, 3);
+}
+
+TEST(Buses, TwoReasonsThatTakeTurnsAreToldOnceEachOutage) {
+  testing::internal::CaptureStdout();  // where the log goes in tests
+  {
+    BusScript script;
+    const auto bus = buses_of({&script}, WhenFull::wait);
+    const auto fail = [&](int failures, const char* reason) {
+      script.refuse(reason);
+      offer(*bus, 1);
+      while (bus->health()[0].failed < failures) std::this_thread::yield();
+    };
+    fail(1, "no route");
+    fail(2, "no buffers");
+    fail(3, "no route");
+    script.refuse("");
+    offer(*bus, 1);
+    while (bus->health()[0].published < 1) std::this_thread::yield();
+    fail(4, "no route");
+  }
+  const std::string log = testing::internal::GetCapturedStdout();
+  const std::regex no_route("no route");
+  EXPECT_EQ(std::distance(std::sregex_iterator(log.begin(), log.end(), no_route), {}), 2) << log;
 }
 
 TEST(Buses, ABusWithoutStatusesIsNotTakenForWellByThem) {
