@@ -18,6 +18,7 @@ constexpr std::array<float, F::kAcross + 1> kBorders = {
     -1.5F, -1.0F, -0.75F, -0.55F, -0.4F, -0.2F, 0.0F, 0.2F, 0.4F, 0.55F, 0.75F, 1.0F, 1.5F};
 constexpr float kReference = 1440 / 6.2831853F;  // the focal length that pixel limits are meant for
 constexpr float kLeastSpread = 0.06F;            // of log brightness
+constexpr int kTall = 48;                        // bands
 constexpr int kSpread = 2;                       // which of the numbers is the grid's spread
 
 }  // namespace
@@ -36,7 +37,7 @@ FeatureReader::FeatureReader(const DetectorSetup& setup)
 }
 
 float FeatureReader::read_grid(const Bands& bands, const TrunkShape& shape, int first_band,
-                               float* out) const {
+                               Care care, float* out) const {
   const float unit =
       std::clamp(0.3F * shape.width(), 3.0F, 14.0F * static_cast<float>(focal_) / kReference);
   const float top = static_cast<float>(first_band * Bands::kRows);
@@ -53,17 +54,21 @@ float FeatureReader::read_grid(const Bands& bands, const TrunkShape& shape, int 
   const int last = std::min(
       {last_band_, static_cast<int>(borders[0] / Bands::kRows) + 1, first_band + kMostGridBands});
   const int first = std::min(first_band, last - 1);
+  // Of tall trunks every other band tells enough for a glance.
+  const int step = care == Care::glance && last - first >= kTall ? 2 : 1;
+  const int count = (last - first) / step;
+  const float rows_a_band = Bands::kRows * static_cast<float>(step);
   const float w = shape.width();
   const float row = (static_cast<float>(first) + 0.5F) * Bands::kRows - shape.foot;
   const bool narrow = 0.5F * w + 1 < static_cast<float>(Bands::kMostColumns);
   CellColumns columns{.sums = bands.sum(first),
-                      .pitch = bands.pitch(),
+                      .pitch = step * bands.pitch(),
                       .coarse = narrow ? nullptr : bands.coarse(first),
-                      .coarse_pitch = bands.coarse_pitch(),
+                      .coarse_pitch = step * bands.coarse_pitch(),
                       .margin = bands.margin(),
-                      .bands = last - first,
+                      .bands = count,
                       .middle = shape.centre() + shape.slope() * row,
-                      .lean = shape.slope() * Bands::kRows};
+                      .lean = shape.slope() * rows_a_band};
   for (int i = 0; i < kGridLanes; ++i) columns.borders[i] = kBorders[std::min(i, F::kAcross)] * w;
   const float sign = shape.dark ? 1.0F : -1.0F;
   for (int i = 0; i < F::kAcross; ++i) {
@@ -75,8 +80,7 @@ float FeatureReader::read_grid(const Bands& bands, const TrunkShape& shape, int 
   const float bottom = static_cast<float>(last * Bands::kRows),
               start = static_cast<float>(first * Bands::kRows);
   const auto band_of = [&](float row_at) {
-    return std::clamp(row_at / Bands::kRows - static_cast<float>(first), 0.0F,
-                      static_cast<float>(last - first) - 1e-3F);
+    return std::clamp((row_at - start) / rows_a_band, 0.0F, static_cast<float>(count) - 1e-3F);
   };
   for (int h = 0; h < F::kHeights; ++h) {
     const float low = std::clamp(borders[h], start + 1, bottom);
@@ -87,7 +91,7 @@ float FeatureReader::read_grid(const Bands& bands, const TrunkShape& shape, int 
     r.to = static_cast<int>(to);
     r.from_rest = from - static_cast<float>(r.from);
     r.to_rest = to - static_cast<float>(r.to);
-    r.factor = Bands::kRows / (low - high);
+    r.factor = rows_a_band / (low - high);
   }
   GridValues values;
   const auto [mean, spread] = read_cells(columns, rows, values);
@@ -124,7 +128,7 @@ void FeatureReader::read_foot(const PanoramaView& panorama, const TrunkShape& sh
 
 void FeatureReader::read(const Bands& bands, const PanoramaView& panorama, const TrunkShape& shape,
                          const EdgeFit& fit, int first_band, F::Values& out) const {
-  const RowLevels levels = read_but_foot(bands, shape, fit, first_band, out);
+  const RowLevels levels = read_but_foot(bands, shape, fit, first_band, Care::full, out);
   even_rows(levels, out.data());
   const float spread = out[F::kGrid + F::kFoot + kSpread];
   float* const foot = out.data() + F::kGrid;
@@ -134,13 +138,14 @@ void FeatureReader::read(const Bands& bands, const PanoramaView& panorama, const
 
 void FeatureReader::glance(const Bands& bands, const TrunkShape& shape, const EdgeFit& fit,
                            int first_band, F::Values& out) const {
-  read_but_foot(bands, shape, fit, first_band, out);
+  read_but_foot(bands, shape, fit, first_band, Care::glance, out);
 }
 
 RowLevels FeatureReader::read_but_foot(const Bands& bands, const TrunkShape& shape,
-                                       const EdgeFit& fit, int first_band, F::Values& out) const {
+                                       const EdgeFit& fit, int first_band, Care care,
+                                       F::Values& out) const {
   static_assert(F::kHeights == kGridHeights && F::kAcross == kGridAcross);
-  const float spread = read_grid(bands, shape, first_band, out.data());
+  const float spread = read_grid(bands, shape, first_band, care, out.data());
   const auto f = static_cast<float>(focal_);
   const float w = shape.width();
   const float top = static_cast<float>(first_band * Bands::kRows);

@@ -44,9 +44,11 @@ class FeatureReader {
               TrunkFeatures::Values& out) const;
 
  private:
+  enum class Care { glance, full };
   RowLevels read_but_foot(const Bands& bands, const TrunkShape& shape, const EdgeFit& fit,
-                          int first_band, TrunkFeatures::Values& out) const;
-  float read_grid(const Bands& bands, const TrunkShape& shape, int first_band, float* out) const;
+                          int first_band, Care care, TrunkFeatures::Values& out) const;
+  float read_grid(const Bands& bands, const TrunkShape& shape, int first_band, Care care,
+                  float* out) const;
   void read_foot(const PanoramaView& panorama, const TrunkShape& shape, float spread,
                  float* out) const;
 

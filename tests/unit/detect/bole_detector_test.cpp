@@ -72,7 +72,7 @@ TEST(BoleDetector, IsSurerOfTrunksThatItIsToldToExpect) {
   float alone = 0, told = 0;
   for (int grey = 200; grey <= 250; grey += 10) {
     PaintedPanorama panorama(usual());
-    const PaintedPanorama::Bar bar{0.5, 4.0, 0.25, grey};
+    const PaintedPanorama::Bar bar{0.5, 7.0, 0.35, grey};
     panorama.plant(bar);
     const auto detector = make_bole_detector(panorama.setup());
     const ExpectedTrunk there = expected(bar);
