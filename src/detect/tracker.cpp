@@ -32,7 +32,7 @@ double squared(double x) { return x * x; }
 // After longer nothing says how the robot moved.
 bool follows(double elapsed) {
   constexpr double kLongestStep = 2.0;  // seconds
-  return elapsed > 0 && elapsed <= kLongestStep;
+  return elapsed >= 0 && elapsed <= kLongestStep;
 }
 
 // No two trees this far apart are ever taken for one, however badly their range is known.
@@ -182,23 +182,28 @@ int Tracker::whole(const Tree& part, int track) {
   return best;
 }
 
-void Tracker::update(std::span<Tree> trees, double elapsed,
-                     const std::optional<EgoMotion>& odometry) {
+// Moves the tracks with the robot; returns how surely.
+MotionEstimate Tracker::follow(std::span<const Tree> trees, double elapsed) {
+  if (elapsed == 0) return {{}, 0.01, 0.01, 0.005};  // a camera that stamps two frames alike
+  const bool first = tracks_.empty();
+  motion_ = estimate(trees, prior(elapsed));
+  motion_seconds_ = first ? std::nullopt : std::optional(elapsed);
+  for (Track& track : tracks_) track.move(motion_, elapsed);
+  return motion_;
+}
+
+void Tracker::update(std::span<Tree> trees, double elapsed) {
   if (!follows(elapsed)) {
     reset();
     elapsed = 0;
   }
-  const bool first = tracks_.empty();
-  motion_ =
-      odometry ? MotionEstimate{*odometry, 0.01, 0.01, 0.005} : estimate(trees, prior(elapsed));
-  motion_seconds_ = first ? std::nullopt : std::optional(elapsed);
-  for (Track& track : tracks_) track.move(motion_, elapsed);
+  const MotionEstimate motion = follow(trees, elapsed);
 
   // However badly the motion is known: an id that jumps a metre is worse than a new one.
   const MotionEstimate slack{{},
-                             std::min(motion_.forward_sigma, 0.05),
-                             std::min(motion_.left_sigma, 0.05),
-                             std::min(motion_.turn_sigma, 0.01)};
+                             std::min(motion.forward_sigma, 0.05),
+                             std::min(motion.left_sigma, 0.05),
+                             std::min(motion.turn_sigma, 0.01)};
   const std::span<const int> pairs = match(trees, slack);
   paired_.assign(tracks_.size(), 0);
   for (const int k : pairs) {

@@ -28,15 +28,15 @@ class Tracker {
   /// Gives each tree of one frame its id, and replaces score, bearing, range, diameter, their
   /// sigmas and angular_width by the estimate from this and the earlier frames. Hand in improbable
   /// trees too, down to a score of 0.05: they may be what is seen of a probable one. Allocates
-  /// nothing for up to kMostTrees. `elapsed`: seconds since the last frame. `odometry`: the motion
-  /// since then where it is measured; else it is estimated from the trees themselves.
-  void update(std::span<Tree> trees, double elapsed, const std::optional<EgoMotion>& odometry = {});
+  /// nothing for up to kMostTrees. `elapsed`: seconds since the last frame; 0 for one of the same
+  /// instant. The motion since then is estimated from the trees themselves.
+  void update(std::span<Tree> trees, double elapsed);
 
   /// Where trees that were probable of late should be seen `elapsed` seconds after the last update.
   /// At most kMostTrees; valid until the next call. Allocates nothing.
   std::span<const ExpectedTrunk> expected(double elapsed);
 
-  /// The motion between the last two frames, as measured or estimated.
+  /// The motion between the last two frames of different instants, as estimated.
   const EgoMotion& last_motion() const { return motion_.mean; }
 
   /// Forgets every tree (ids are never used again) and the motion.
@@ -45,6 +45,7 @@ class Tracker {
  private:
   MotionEstimate prior(double elapsed) const;
   MotionEstimate estimate(std::span<const Tree> trees, const MotionEstimate& prior);
+  MotionEstimate follow(std::span<const Tree> trees, double elapsed);
   /// The track of each tree, -1 for none, if the robot has moved by `motion`, within its sigmas.
   std::span<const int> match(std::span<const Tree> trees, const MotionEstimate& motion);
   /// Where a track's tree should be seen, and how far from there it may be at most.

@@ -370,14 +370,18 @@ TEST(Tracker, ForgetsAfterAJumpOfTimeAndNeverReusesAnId) {
   EXPECT_EQ(one[0].id, 1);
 }
 
-TEST(Tracker, MeasuredMotionReplacesTheEstimate) {
-  Tracker tracker;
-  const WorldTree tree{3, 1, 0.4};
-  std::vector<Tree> first{seen(tree, {})};
-  tracker.update(first, 0.1);
-  std::vector<Tree> second{seen(tree, {0, 0, 1.0})};  // a turn no prior would expect
-  tracker.update(second, 0.1, EgoMotion{0, 0, 1.0});
-  EXPECT_EQ(second[0].id, first[0].id);
+TEST(Tracker, KeepsIdsAndMotionOverTwoFramesOfOneInstant) {
+  Tracker tracker = tracker_of_a_drive(0.9F, 30);
+  std::vector<Tree> same{seen({9, -4, 0.3}, {2.9, 0, 0})};
+  const double forward = tracker.last_motion().forward;
+  tracker.update(same, 0);
+  const std::int32_t id = same[0].id;
+  EXPECT_EQ(tracker.last_motion().forward, forward);
+  std::vector<Tree> next{seen({9, -4, 0.3}, {3.0, 0, 0})};
+  tracker.update(next, 0.1);
+  EXPECT_EQ(next[0].id, id);
+  EXPECT_LT(id, 4) << "an id of the drive";
+  EXPECT_NEAR(tracker.last_motion().forward, 0.1, 0.02);
 }
 
 }  // namespace
