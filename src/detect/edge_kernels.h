@@ -22,6 +22,11 @@ struct EdgeBands {
   float first_row = 0;                  ///< of the first band's middle, the edge's foot being row 0
   float row_step = 0;                   ///< rows a band
   int flank = 0;                        ///< columns of the means on either side
+
+  std::int16_t bend(int band, int column) const {
+    const std::uint16_t* at = sums + band * pitch + column;
+    return static_cast<std::int16_t>(at[flank] - 2 * at[0] + at[-flank]);
+  }
 };
 
 /// A straight edge: column + slope * row.
@@ -36,6 +41,8 @@ struct EdgePlaces {
   int count = 0;  ///< bands, rounded up to kEdgeLanes
   int found = 0;  ///< of them with a place
   alignas(64) std::array<float, kMostEdgeBands> row, column, weight;
+
+  static int whole_groups(int bands) { return (bands + kEdgeLanes - 1) / kEdgeLanes * kEdgeLanes; }
 };
 
 /// Looks for the highest sign * bend (above the horizon of either sign) within kReach columns of
@@ -67,8 +74,9 @@ EdgeResponses respond_along_plain(const EdgeBands& bands, EdgeLine left, EdgeLin
                                   float full);
 
 /// What two edges say of a trunk, band by band: (l + r) / 4 + min(l, r) / 2 - 0.3 with the same
-/// responses; above the horizon a response of the wrong sign counts -0.7 of one of the right sign,
-/// and the value is 0.4 ((l + r) / 4 + min(l, r) / 2 - 0.5).
+/// responses; above the horizon a response of the wrong sign counts kWrongSignAbove of one of the
+/// right sign, and the value is 0.4 ((l + r) / 4 + min(l, r) / 2 - 0.5).
+inline constexpr float kWrongSignAbove = -0.7F;
 using BandValues = std::array<float, kMostEdgeBands>;
 void join_edges(const EdgeBands& bands, EdgeLine left, EdgeLine right, float full,
                 BandValues& values);
