@@ -61,6 +61,12 @@ double Track::drop_of(const Tree& tree) const {
   return -std::tan(tree.base_elevation) * foot_distance(range(), diameter_);
 }
 
+void Track::scale(double factor) {
+  state_.x *= factor;
+  state_.y *= factor;
+  diameter_ *= factor;
+}
+
 ExpectedTrunk Track::after(const EgoMotion& motion) const {
   const GroundPoint at = moved(position(), motion);
   const double range = std::hypot(at.x, at.y);

@@ -51,6 +51,8 @@ class Track {
   double doubtful() const { return doubtful_; }  ///< seconds since it last looked like a tree
   double sightings() const { return score_.sightings(); }
   double level() const { return score_.level(); }
+  /// The world is larger by this factor than was thought.
+  void scale(double factor);
   void forget() { unseen_ = std::numeric_limits<double>::infinity(); }
 
  private:

@@ -26,6 +26,9 @@ constexpr double kFartherIfSame = 1.6;
 constexpr double kBeyondEdge = 0.15;   // of a tree's width, that a part of it may stand out
 constexpr double kNearer = 0.6;        // metres that a part of a tree may seem nearer
 constexpr double kPartOfRange = 0.05;  // that a range is off by when another foot is found
+constexpr double kScaleSeconds = 5.0;  // after which the ranges seen set the scale
+constexpr double kScaleSigma = 0.05;   // of the scale as it is
+constexpr double kLeastError = 0.03;   // of a range seen, as a share of it
 
 double squared(double x) { return x * x; }
 
@@ -192,6 +195,26 @@ MotionEstimate Tracker::follow(std::span<const Tree> trees, double elapsed) {
   return motion_;
 }
 
+// Bearings alone give tracked ranges and the motion but for one factor: too short a motion makes
+// all of them shrink, and the tracks, each of which allows its range a lasting error, do not mind.
+// What ranges have in common is no error of one foot.
+void Tracker::rescale(std::span<const Tree> trees, std::span<const int> pairs, double elapsed) {
+  double errors = 0, weights = 1 / squared(kScaleSigma);
+  for (std::size_t i = 0; i < trees.size(); ++i) {
+    if (pairs[i] < 0 || tracks_[pairs[i]].sightings() <= kFewSightings) continue;
+    const double sigma =
+        std::max<double>(trees[i].range_sigma / std::max(trees[i].range, 0.1F), kLeastError);
+    const double error = std::log(std::max(trees[i].range, 0.1F) / tracks_[pairs[i]].range());
+    const double weight = trees[i].score / squared(sigma);
+    errors += weight * std::clamp(error, -3 * sigma, 3 * sigma);
+    weights += weight;
+  }
+  const double factor = std::exp(std::min(1.0, elapsed / kScaleSeconds) * errors / weights);
+  for (Track& track : tracks_) track.scale(factor);
+  motion_.mean.forward *= factor;
+  motion_.mean.left *= factor;
+}
+
 void Tracker::update(std::span<Tree> trees, double elapsed) {
   if (!follows(elapsed)) {
     reset();
@@ -205,6 +228,7 @@ void Tracker::update(std::span<Tree> trees, double elapsed) {
                              std::min(motion.left_sigma, 0.05),
                              std::min(motion.turn_sigma, 0.01)};
   const std::span<const int> pairs = match(trees, slack);
+  rescale(trees, pairs, elapsed);
   paired_.assign(tracks_.size(), 0);
   for (const int k : pairs) {
     if (k >= 0) paired_[k] = 1;

@@ -56,6 +56,8 @@ class Tracker {
   static Place place_of(const Track& track, const MotionEstimate& motion);
   static double cost_of(const Tree& tree, const Track& track, const Place& place,
                         const MotionEstimate& motion);
+  /// Brings tracks and motion to the scale of the ranges seen.
+  void rescale(std::span<const Tree> trees, std::span<const int> pairs, double elapsed);
   /// The track that a sighting, paired with `track` (-1: none), is part of.
   int whole(const Tree& part, int track);
 

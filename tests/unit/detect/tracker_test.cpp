@@ -370,6 +370,26 @@ TEST(Tracker, ForgetsAfterAJumpOfTimeAndNeverReusesAnId) {
   EXPECT_EQ(one[0].id, 1);
 }
 
+TEST(Tracker, BringsTracksToTheScaleOfTheRangesSeen) {
+  // For two seconds all seems nearer than it is, as on a hump; then for six as it is.
+  Tracker tracker;
+  double ratio = 0;
+  for (int frame = 0; frame < 80; ++frame) {
+    std::vector<Tree> trees;
+    for (const double y : {-6.0, -4.0, -2.0, 2.0, 4.0, 6.0}) {
+      trees.push_back(seen({12, y, 0.3}, {0.1 * frame, 0, 0}));
+      if (frame < 20) trees.back().range *= 0.85F;
+      trees.back().range_sigma = 0.1F * trees.back().range;
+    }
+    const std::vector<Tree> shown = trees;
+    tracker.update(trees, frame == 0 ? 0 : 0.1);
+    ratio = 0;
+    for (std::size_t i = 0; i < trees.size(); ++i)
+      ratio += trees[i].range / shown[i].range / static_cast<float>(trees.size());
+  }
+  EXPECT_NEAR(ratio, 1, 0.04);
+}
+
 TEST(Tracker, KeepsIdsAndMotionOverTwoFramesOfOneInstant) {
   Tracker tracker = tracker_of_a_drive(0.9F, 30);
   std::vector<Tree> same{seen({9, -4, 0.3}, {2.9, 0, 0})};
