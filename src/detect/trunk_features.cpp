@@ -19,7 +19,6 @@ constexpr std::array<float, F::kAcross + 1> kBorders = {
 constexpr float kReference = 1440 / 6.2831853F;  // the focal length that pixel limits are meant for
 constexpr float kLeastSpread = 0.06F;            // of log brightness
 constexpr int kTall = 48;                        // bands
-constexpr int kSpread = 2;                       // which of the numbers is the grid's spread
 
 }  // namespace
 
@@ -128,9 +127,9 @@ void FeatureReader::read_foot(const PanoramaView& panorama, const TrunkShape& sh
 
 void FeatureReader::read(const Bands& bands, const PanoramaView& panorama, const TrunkShape& shape,
                          const EdgeFit& fit, int first_band, F::Values& out) const {
-  const RowLevels levels = read_but_foot(bands, shape, fit, first_band, Care::full, out);
+  RowLevels levels;
+  const float spread = read_but_foot(bands, shape, fit, first_band, Care::full, levels, out);
   even_rows(levels, out.data());
-  const float spread = out[F::kGrid + F::kFoot + kSpread];
   float* const foot = out.data() + F::kGrid;
   read_foot(panorama, shape, spread, foot);
   out.back() = even_foot(std::max(spread, kLeastSpread), foot);
@@ -138,12 +137,13 @@ void FeatureReader::read(const Bands& bands, const PanoramaView& panorama, const
 
 void FeatureReader::glance(const Bands& bands, const TrunkShape& shape, const EdgeFit& fit,
                            int first_band, F::Values& out) const {
-  read_but_foot(bands, shape, fit, first_band, Care::glance, out);
+  RowLevels levels;
+  read_but_foot(bands, shape, fit, first_band, Care::glance, levels, out);
 }
 
-RowLevels FeatureReader::read_but_foot(const Bands& bands, const TrunkShape& shape,
-                                       const EdgeFit& fit, int first_band, Care care,
-                                       F::Values& out) const {
+float FeatureReader::read_but_foot(const Bands& bands, const TrunkShape& shape, const EdgeFit& fit,
+                                   int first_band, Care care, RowLevels& levels,
+                                   F::Values& out) const {
   static_assert(F::kHeights == kGridHeights && F::kAcross == kGridAcross);
   const float spread = read_grid(bands, shape, first_band, care, out.data());
   const auto f = static_cast<float>(focal_);
@@ -170,10 +170,10 @@ RowLevels FeatureReader::read_but_foot(const Bands& bands, const TrunkShape& sha
       (shape.left_slope - shape.right_slope) * 20,
       shape.slope() * 20,
   };
-  static_assert(kSpread == 2);
   std::copy(std::begin(numbers), std::end(numbers), out.data() + F::kGrid + F::kFoot);
-  return row_contrasts(std::max(spread, kLeastSpread), out.data(),
-                       out.data() + F::kGrid + F::kFoot + F::kNumbers);
+  levels = row_contrasts(std::max(spread, kLeastSpread), out.data(),
+                         out.data() + F::kGrid + F::kFoot + F::kNumbers);
+  return spread;
 }
 
 }  // namespace bole

@@ -45,8 +45,10 @@ class FeatureReader {
 
  private:
   enum class Care { glance, full };
-  RowLevels read_but_foot(const Bands& bands, const TrunkShape& shape, const EdgeFit& fit,
-                          int first_band, Care care, TrunkFeatures::Values& out) const;
+  // Returns the grid's spread, log brightness; so does read_grid.
+  float read_but_foot(const Bands& bands, const TrunkShape& shape, const EdgeFit& fit,
+                      int first_band, Care care, RowLevels& levels,
+                      TrunkFeatures::Values& out) const;
   float read_grid(const Bands& bands, const TrunkShape& shape, int first_band, Care care,
                   float* out) const;
   void read_foot(const PanoramaView& panorama, const TrunkShape& shape, float spread,
