@@ -123,12 +123,6 @@ void judge_at_a_glance(std::span<const F::Values> features, std::span<Judgement>
       });
 }
 
-Judgement judge(const TrunkFeatures::Values& features) {
-  Judgement judgement;
-  judge(std::span(&features, 1), std::span(&judgement, 1));
-  return judgement;
-}
-
 TrunkShape corrected(const TrunkShape& shape, const Judgement& judgement, double focal) {
   TrunkShape better = shape;
   const float down = std::clamp(judgement.foot_shift, -8.0F, 8.0F) * foot_unit(shape, focal);

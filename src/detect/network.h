@@ -17,7 +17,6 @@ struct Judgement {
 
 /// Two hidden layers over the features of a candidate; the weights come from tools/train. Several
 /// at a time take less time for each.
-Judgement judge(const TrunkFeatures::Values& features);
 void judge(std::span<const TrunkFeatures::Values> features, std::span<Judgement> judgements);
 /// One small layer over all features but those about the foot: worth a tenth of the time, where
 /// most are no trunks.

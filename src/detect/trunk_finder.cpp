@@ -131,9 +131,7 @@ void TrunkFinder::look(const PanoramaView& panorama, std::span<Sight> sights) co
       [&](const Trunk& trunk, TrunkFeatures::Values& features) {
         return read(panorama, trunk.shape, trunk.fit, features);
       },
-      [](std::span<const TrunkFeatures::Values> features, std::span<Judgement> judgements) {
-        judge(features, judgements);
-      });
+      judge);
 }
 
 // Second looks, from where the first ones say that the trunks are; some at a time.

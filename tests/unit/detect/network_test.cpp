@@ -28,24 +28,26 @@ void expect_golden(const char* name, const Judgement& now) {
   for (int i = 0; i < 7; ++i) EXPECT_NEAR(is[i], was[i], 5e-3) << i;
 }
 
-Judgement glance(const TrunkFeatures::Values& features) {
+// By judge or judge_at_a_glance.
+template <class Judge>
+Judgement one(const Judge& judge, const TrunkFeatures::Values& features) {
   Judgement judgement;
-  judge_at_a_glance(std::span(&features, 1), std::span(&judgement, 1));
+  judge(std::span(&features, 1), std::span(&judgement, 1));
   return judgement;
 }
 
 // The weights as they were trained: a change of them, or of how they are used, shows here.
 TEST(Network, JudgesAsTheTrainedWeightsSay) {
-  expect_golden("detect/judgement.bin", judge(some_features()));
-  expect_golden("detect/glance.bin", glance(some_features()));
+  expect_golden("detect/judgement.bin", one(judge, some_features()));
+  expect_golden("detect/glance.bin", one(judge_at_a_glance, some_features()));
 }
 
 TEST(Network, DoesNotLookAtTheFootAtAGlance) {
   TrunkFeatures::Values features = some_features();
-  const Judgement with_foot = glance(features);
+  const Judgement with_foot = one(judge_at_a_glance, features);
   std::fill_n(features.begin() + TrunkFeatures::kGrid, TrunkFeatures::kFoot, 9.0F);
   features.back() = 9;
-  const Judgement without = glance(features);
+  const Judgement without = one(judge_at_a_glance, features);
   EXPECT_EQ(std::memcmp(&with_foot, &without, sizeof(Judgement)), 0);
 }
 
