@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <span>
 
 namespace bole {
 namespace {
@@ -82,7 +83,7 @@ TEST_F(ZenohPython, ASubscriberThatNeverReadsDelaysNothing) {
   ZenohSession subscriber(connecting(endpoint_, "client"), std::nullopt, {"bole/**"});
   ASSERT_TRUE(time_to_delivery(daemon_, subscriber));
 
-  const std::vector<std::byte> payload(1400);
+  const std::vector<std::byte> payload(14000);
   std::vector<double> took_us;
   for (int i = 0; i < 3000; ++i) {
     const auto start = steady_clock::now();
@@ -91,11 +92,13 @@ TEST_F(ZenohPython, ASubscriberThatNeverReadsDelaysNothing) {
         std::chrono::duration<double, std::micro>(steady_clock::now() - start).count());
     std::this_thread::sleep_for(200us);
   }
-  std::ranges::sort(took_us);
-  RecordProperty("p50_us", std::to_string(took_us[took_us.size() / 2]));
-  RecordProperty("p99_us", std::to_string(took_us[took_us.size() * 99 / 100]));
-  RecordProperty("max_us", std::to_string(took_us.back()));
-  EXPECT_LT(took_us[took_us.size() * 99 / 100], 1000);
+  // By the last third 28 MB have filled all buffers: were a put to wait for them, each would. A
+  // single one may take any time where other programs run.
+  const auto last = std::span(took_us).last(1000);
+  std::ranges::sort(last);
+  RecordProperty("p50_us", std::to_string(last[500]));
+  RecordProperty("p99_us", std::to_string(last[990]));
+  EXPECT_LT(last[500], 1000);
   EXPECT_TRUE(time_to_delivery(daemon_, subscriber));
 }
 
