@@ -15,27 +15,39 @@ reported on.
 """
 import argparse
 import pathlib
+import re
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import optax
 
-HEAD = 6  # frame, label, three shifts, weight: see dump_candidates.cpp
-HEIGHTS, ACROSS, FOOT_ROWS, STRIPS, NUMBERS = 11, 12, 16, 3, 19  # see trunk_features.h
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def constant(name, file):
+    """What the detector's own source says."""
+    return float(re.search(rf"\b{name} = ([\d.]+)F?;", (ROOT / file).read_text())[1])
+
+
+HEAD = int(constant("kHead", "tools/train/dump_candidates.cpp"))
+HEIGHTS, ACROSS, FOOT_ROWS, STRIPS, NUMBERS, ROW_NUMBERS = (
+    int(constant(name, "src/detect/trunk_features.h"))
+    for name in ("kHeights", "kAcross", "kFootRows", "kStrips", "kNumbers", "kRowNumbers"))
 GRID = HEIGHTS * ACROSS
-ROW_NUMBERS = 7
 ROWS = GRID + FOOT_ROWS * STRIPS + NUMBERS  # where the rows' numbers begin
 FEATURES = ROWS + ROW_NUMBERS * HEIGHTS + HEIGHTS
 LEFT_EDGE, RIGHT_EDGE = (slice(ROWS + k * HEIGHTS, ROWS + (k + 1) * HEIGHTS) for k in (2, 3))
 LEFT_RIGHT_NUMBERS = [(5, 6), (8, 9), (13, 14)]  # that change places in a mirror
 SIDEWAYS_NUMBERS = [18]  # that change sign in a mirror
 POLARITY_NUMBER = 3  # 1 dark, -1 bright
-HIDDEN, OUTPUTS, LEAK = (192, 48), 7, 0.05
+HIDDEN, OUTPUTS = (192, 48), 7
+LEAK = constant("kLeak", "src/detect/dense_layer.h")
 FOOT = slice(GRID, GRID + FOOT_ROWS * STRIPS)
 GLANCE_HIDDEN = (48,)
 SPREAD_NUMBER = 2  # of the grid, log brightness
-LEAST_SPREAD, LEAST_ROW_SPREAD = 0.06, 0.04  # see trunk_features.cpp, row_contrasts.cpp
+LEAST_SPREAD = constant("kLeastSpread", "src/detect/trunk_features.cpp")
+LEAST_ROW_SPREAD = constant("kLeastSpread", "src/detect/row_contrasts.cpp")
 LIMIT = 4.0  # of a standardised feature
 MOST_WEIGHT = 8  # of a sample: it stands for others that were not kept
 SHIFTS_WEIGHT = 0.12  # of their likelihood beside the logit's
