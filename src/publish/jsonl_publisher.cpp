@@ -32,6 +32,7 @@ JsonlPublisher::JsonlPublisher(const std::filesystem::path& target)
 
 void JsonlPublisher::publish(MessageKind /*kind*/, std::span<const std::byte> bytes,
                              const std::string& file) {
+  if (torn_) write_all("\n");
   write_json_line(decode_tree_list(bytes), file, line_);
   write_all(line_);
 }
@@ -49,7 +50,9 @@ void JsonlPublisher::write_all(std::string_view text) {
     if (written < 0 && errno != EINTR && errno != EAGAIN) {
       throw BusError("cannot be written: " + reason(errno));
     }
-    if (written > 0) text.remove_prefix(static_cast<std::size_t>(written));
+    if (written <= 0) continue;
+    text.remove_prefix(static_cast<std::size_t>(written));
+    torn_ = !text.empty();
   }
 }
 

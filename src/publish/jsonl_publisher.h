@@ -9,7 +9,8 @@
 
 namespace bole {
 
-/// Tree lists as lines of JSON, each written at once; no statuses: a line is a list.
+/// Tree lists as lines of JSON, each written at once; no statuses: a line is a list. One that was
+/// only taken in part, as by a full disk, is left behind; the next begins on a new line.
 class JsonlPublisher : public Publisher {
  public:
   /// `target`: a path, whose file is made anew, or "-" for standard output. Throws ConfigError when
@@ -28,6 +29,7 @@ class JsonlPublisher : public Publisher {
   UniqueFd fd_;
   Wakeup interrupted_;
   std::string line_;
+  bool torn_ = false;  // only the beginning of the last line was taken
 };
 
 }  // namespace bole
