@@ -1,5 +1,7 @@
 """Settings of Zenoh that cannot work, those that may yet, and who is let in."""
 
+import contextlib
+import socket
 import subprocess
 import time
 
@@ -67,6 +69,18 @@ def test_a_port_in_use_is_one_line_and_exit_code_2(boled, programs, raw_drive, t
         run = boled("--publish", "zenoh", "--set", setting, camera=raw_drive / "camera.toml",
                     source=f"replay:{raw_drive}")
     assert "zenoh.listen" in (line := refusal(run)) and "the port is in use" in line
+
+
+def test_the_default_port_in_use_is_one_line_with_a_remedy(boled, raw_drive):
+    with socket.socket() as other:
+        with contextlib.suppress(OSError):  # whoever has it already will do
+            other.bind(("127.0.0.1", 7447))
+            other.listen()
+        run = boled("--publish", "zenoh", camera=raw_drive / "camera.toml",
+                    source=f"replay:{raw_drive}")
+    line = refusal(run)
+    assert "zenoh.listen" in line and "the port is in use" in line
+    assert 'zenoh.connect=["tcp/127.0.0.1:7447"]' in line
 
 
 def test_a_private_key_of_another_is_one_line_and_exit_code_2(boled, raw_drive, certificates):

@@ -178,19 +178,32 @@ fn check_endpoints(key: &str, endpoints: &[String]) -> Checked<()> {
     Ok(())
 }
 
-/// Refuses endpoints to listen on whose port another program has.
-pub fn check_ports(listen: &[String]) -> Checked<()> {
-    for text in listen {
+/// Refuses endpoints to listen on, given or by default, whose port another program has.
+pub fn check_ports(config: &Config) -> Checked<()> {
+    for text in listen_endpoints(config) {
         let Ok(endpoint) = text.parse::<EndPoint>() else { continue };
         // Other failures may pass, as an address that the interface has not got yet.
         let bound = TcpListener::bind(endpoint.address().as_str());
         if bound.is_err_and(|e| e.kind() == ErrorKind::AddrInUse) {
             let what = format!("{text:?}: the port is in use");
-            let remedy = "choose another port, or end the other program";
+            let remedy = format!(
+                "listen on another port, or connect to who has it: zenoh.connect=[{text:?}]"
+            );
             return Err(problem("zenoh.listen", what, remedy));
         }
     }
     Ok(())
+}
+
+/// Of the configuration's mode: zenoh keeps a list for all modes, or one for each.
+fn listen_endpoints(config: &Config) -> Vec<String> {
+    let get = |key| serde_json::from_str::<Value>(&config.get_json(key).ok()?).ok();
+    let endpoints = get("listen/endpoints").unwrap_or_default();
+    let list = match get("mode") {
+        Some(Value::String(mode)) if endpoints.is_object() => &endpoints[mode],
+        _ => &endpoints,
+    };
+    serde_json::from_value(list.clone()).unwrap_or_default()
 }
 
 fn check_tls(settings: &Settings) -> Checked<()> {

@@ -124,7 +124,7 @@ pub struct Session {
 impl Session {
     pub fn open(settings: &Settings) -> Result<Session, Problem> {
         let (config, overridden) = config::build(settings)?;
-        config::check_ports(&settings.listen)?;
+        config::check_ports(&config)?;
         let shared = Arc::new(Shared {
             topics: settings.topics.iter().map(topic).collect::<Result<_, _>>()?,
             alive_key: match settings.alive_key.as_str() {
