@@ -30,7 +30,7 @@ void detect(const Options& options) {
     std::span<const Tree> trees;
     try {
       picture = read_picture(image);
-      trees = detector.detect(picture);
+      trees = detector.detect(detector.warp(picture));
     } catch (const std::runtime_error& error) {
       std::puts(error_line(image.filename().string(), error.what()).c_str());
       if (bad++ == 0) first_bad = image.string() + ": " + error.what();
@@ -52,15 +52,18 @@ void detect(const Options& options) {
 void add_detect(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
-      "detect", "Find trunks in images, each by itself; a line of JSON an image");
+      "detect", "Finds trunks in images, each by itself; prints a line of JSON an image");
   command->add_option("--camera", options->camera, "camera.toml of the camera that took them")
+      ->type_name("FILE")
       ->required();
-  command->add_option("--mode", options->mode, "paper: the reference; bole: the product")
+  command->add_option("--mode", options->mode, "The detector: bole, or paper for the reference")
       ->check(CLI::IsMember({"bole", "paper"}))
       ->capture_default_str();
-  command->add_option("--annotate", options->annotate,
-                      "folder for three pictures an image: panorama, raw image, map");
-  command->add_option("IMAGE", options->images, "image files")->required();
+  command
+      ->add_option("--annotate", options->annotate,
+                   "Folder for three pictures an image: panorama, raw image, map")
+      ->type_name("FOLDER");
+  command->add_option("IMAGE", options->images, "Image files")->type_name("")->required();
   command->callback([options] { detect(*options); });
 }
 

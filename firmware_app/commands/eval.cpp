@@ -33,16 +33,16 @@ class DriveTracker {
                                             : Tracker::Scores::ranks),
         least_score_(mode == DetectorMode::bole ? 0 : min_score) {}
 
-  /// `alone`: the picture's trees by itself.
+  /// `alone`: the panorama's trees by itself.
   std::vector<Tree> detect(ImageDetector& detector, const TruthFrame& frame,
-                           const cv::Mat3b& picture, const std::vector<Tree>& alone) {
-    if (frame.world != world_ || frame.utime <= utime_) tracker_.reset();
+                           const PanoramaView& panorama, const std::vector<Tree>& alone) {
+    if (frame.world != world_) tracker_.reset();
     const double elapsed = static_cast<double>(frame.utime - utime_) * 1e-6;
     world_ = frame.world;
     utime_ = frame.utime;
     std::vector<Tree> trees = alone;
     if (const auto expected = tracker_.expected(elapsed); !expected.empty()) {
-      const std::span<const Tree> found = detector.detect(picture, expected);
+      const std::span<const Tree> found = detector.detect(panorama, expected);
       trees.assign(found.begin(), found.end());
     }
     std::erase_if(trees, [&](const Tree& tree) { return tree.score < least_score_; });
@@ -54,7 +54,7 @@ class DriveTracker {
  private:
   Tracker tracker_;
   double least_score_;
-  int world_ = -1;
+  int world_ = 0;
   std::int64_t utime_ = 0;
 };
 
@@ -65,11 +65,11 @@ Run run(ImageDetector& detector, DetectorMode mode, const Truth& truth, const Op
   for (const TruthFrame& frame : truth.frames) {
     const fs::path file = fs::path(options.folder) / frame.file;
     try {
-      const cv::Mat3b picture = read_picture(file);
-      const std::span<const Tree> trees = detector.detect(picture);
+      const PanoramaView panorama = detector.warp(read_picture(file));
+      const std::span<const Tree> trees = detector.detect(panorama);
       std::vector<Tree>& alone = result.detections[frame.file];
       alone.assign(trees.begin(), trees.end());
-      result.tracked[frame.file] = tracker.detect(detector, frame, picture, alone);
+      result.tracked[frame.file] = tracker.detect(detector, frame, panorama, alone);
     } catch (const std::runtime_error& error) {
       throw ConfigError(file.string(), "", error.what(), "every frame of the truth is needed");
     }
@@ -107,20 +107,26 @@ void eval(const Options& options) {
 
 void add_eval(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
-      "eval", "Measure both detectors against marked frames, as tools/score.py does");
+  CLI::App* command =
+      app.add_subcommand("eval", "Measures both detectors on frames whose trees are known");
   command->add_option("--camera", options->camera, "camera.toml of the camera that took them")
+      ->type_name("FILE")
       ->required();
-  command->add_option("--truth", options->truth, "truth.json")->required();
-  command->add_option("--plots", options->plots,
-                      "folder for the curves and the ten worst frames, as PNG");
+  command->add_option("--truth", options->truth, "truth.json, as bolectl sim writes it")
+      ->type_name("FILE")
+      ->required();
+  command
+      ->add_option("--plots", options->plots,
+                   "Folder for the curves and the ten worst frames, as PNG")
+      ->type_name("FOLDER");
   command
       ->add_option("--min-score", options->min_score,
-                   "the score from which on a tree counts; AP is over all")
+                   "The score from which on a tree counts; AP is over all")
+      ->type_name("SCORE")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  command->add_flag("--json", options->json, "one line of JSON");
-  command->add_option("DIR", options->folder, "folder of the frames")->required();
+  command->add_flag("--json", options->json, "Print one line of JSON");
+  command->add_option("DIR", options->folder, "Folder of the frames")->type_name("")->required();
   command->callback([options] { eval(*options); });
 }
 

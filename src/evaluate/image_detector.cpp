@@ -29,6 +29,14 @@ cv::Mat3b read_picture(const std::filesystem::path& file) {
   return picture;
 }
 
+ImageView view_of(const cv::Mat3b& picture) {
+  const std::span bytes(reinterpret_cast<const std::byte*>(picture.data),
+                        picture.step * static_cast<std::size_t>(picture.rows));
+  return {PixelFormat::bgr24,
+          {picture.cols, picture.rows},
+          {Plane{bytes, static_cast<int>(picture.step)}, Plane{}}};
+}
+
 ImageDetector::ImageDetector(const std::filesystem::path& camera_toml, DetectorMode mode)
     : camera_(load_camera(camera_toml)),
       table_(load_or_build_warp_table(camera_, default_cache_directory()).table),
@@ -39,16 +47,12 @@ ImageDetector::ImageDetector(const std::filesystem::path& camera_toml, DetectorM
                                      .search = camera_.config.search})) {}
 
 PanoramaView ImageDetector::warp(const cv::Mat3b& picture) {
-  const std::span bytes(reinterpret_cast<const std::byte*>(picture.data),
-                        picture.step * static_cast<std::size_t>(picture.rows));
-  return warper_.warp({PixelFormat::bgr24,
-                       {picture.cols, picture.rows},
-                       {Plane{bytes, static_cast<int>(picture.step)}, Plane{}}});
+  return warper_.warp(view_of(picture));
 }
 
-std::span<const Tree> ImageDetector::detect(const cv::Mat3b& picture,
+std::span<const Tree> ImageDetector::detect(const PanoramaView& panorama,
                                             std::span<const ExpectedTrunk> expected) {
-  const std::span<const Tree> trees = detector_->detect(warp(picture), expected);
+  const std::span<const Tree> trees = detector_->detect(panorama, expected);
   const auto end = std::find_if(trees.begin(), trees.end(),
                                 [](const Tree& tree) { return tree.score < kLeastScore; });
   return trees.first(static_cast<std::size_t>(end - trees.begin()));

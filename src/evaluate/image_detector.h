@@ -15,6 +15,9 @@ namespace bole {
 /// damaged or no picture.
 cv::Mat3b read_picture(const std::filesystem::path& file);
 
+/// The picture's own pixels, as an image.
+ImageView view_of(const cv::Mat3b& picture);
+
 /// From a picture to its trees, with one camera and one detector: each picture by itself.
 class ImageDetector {
  public:
@@ -32,8 +35,8 @@ class ImageDetector {
   /// the calibration's.
   PanoramaView warp(const cv::Mat3b& picture);
 
-  /// The picture's trees with a score of 0.05 or more, best first, until the next call.
-  std::span<const Tree> detect(const cv::Mat3b& picture,
+  /// The panorama's trees with a score of 0.05 or more, best first, until the next call.
+  std::span<const Tree> detect(const PanoramaView& panorama,
                                std::span<const ExpectedTrunk> expected = {});
 
  private:

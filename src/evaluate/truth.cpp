@@ -50,7 +50,9 @@ Truth parse_truth(const std::string& text, const std::string& file) {
       TruthFrame& frame = truth.frames.emplace_back();
       frame.file = value.at("file");
       frame.utime = value.value("utime", std::int64_t{0});
-      frame.world = value.value("world", 0);
+      // What has no time follows nothing.
+      const int alone = -static_cast<int>(truth.frames.size());
+      frame.world = value.value("world", value.contains("utime") ? 0 : alone);
       frame.exhaustive = value.value("exhaustive", true);
       for (const json& tree : value.at("trees")) frame.trees.push_back(tree_of(tree));
       frame.metric = metric(frame, root);

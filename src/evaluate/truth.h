@@ -22,7 +22,7 @@ struct TruthTree {
 struct TruthFrame {
   std::string file;
   std::int64_t utime = 0;  ///< microseconds; of frames of a drive
-  int world = 0;           ///< frames of one world follow each other
+  int world = 0;           ///< frames of one world follow each other; one without time is alone
   bool exhaustive = true;  ///< every trunk is marked; else only recall counts
   /// Trees are judged by position; else by bearing alone.
   bool metric = false;
