@@ -1,15 +1,13 @@
 #include "evaluate/annotate.h"
 
-#include <stdexcept>
-
-#include <opencv2/imgcodecs.hpp>
+#include "base/files.h"
+#include "base/png_file.h"
+#include "evaluate/image_detector.h"
 
 namespace bole {
 
 void write_picture(const std::filesystem::path& file, const cv::Mat3b& picture) {
-  if (!cv::imwrite(file.string(), picture)) {
-    throw std::runtime_error("cannot write " + file.string());
-  }
+  write_file_atomically(file, encode_png(view_of(picture)));
 }
 
 void write_annotations(const std::filesystem::path& folder, const std::string& name,

@@ -41,11 +41,11 @@ cv::Mat3b draw_raw(const Camera& camera, const cv::Mat3b& picture, std::span<con
 /// scale, with the uncertainty of their range, on circles at whole metres.
 cv::Mat3b draw_polar_map(const Search& search, std::span<const Tree> trees);
 
-/// Writes a PNG file. Throws std::runtime_error when that fails.
+/// Writes a PNG file. Throws ConfigError when that fails.
 void write_picture(const std::filesystem::path& file, const cv::Mat3b& picture);
 
 /// Writes all three as PNG: <folder>/<name>_panorama.png, _raw.png, _map.png. Throws
-/// std::runtime_error when that fails.
+/// ConfigError when that fails.
 void write_annotations(const std::filesystem::path& folder, const std::string& name,
                        const Camera& camera, const WarpTable& table, const cv::Mat3b& picture,
                        std::span<const Tree> trees);

@@ -1,13 +1,15 @@
 #include "simulate/image_files.h"
 
-#include <png.h>
 #include <turbojpeg.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <stdexcept>
+
+#include "base/png_file.h"
 
 namespace bole::simulate {
 namespace {
@@ -101,49 +103,11 @@ std::vector<std::byte> interleaved(const Picture& picture, bool red_first) {
   return bytes;
 }
 
-void append_png(png_structp png, png_bytep data, png_size_t length) {
-  auto& bytes = *static_cast<std::vector<std::byte>*>(png_get_io_ptr(png));
-  const auto* first = reinterpret_cast<const std::byte*>(data);
-  bytes.insert(bytes.end(), first, first + length);
-}
-
-void png_failed(png_structp /*png*/, png_const_charp message) { throw std::runtime_error(message); }
-
-class PngWriter {
- public:
-  PngWriter() {
-    png_ = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, png_failed, nullptr);
-    if (png_ != nullptr) info_ = png_create_info_struct(png_);
-    if (info_ == nullptr) throw std::bad_alloc();
-  }
-  PngWriter(const PngWriter&) = delete;
-  PngWriter& operator=(const PngWriter&) = delete;
-  ~PngWriter() { png_destroy_write_struct(&png_, &info_); }
-  png_structp png() { return png_; }
-  png_infop info() { return info_; }
-
- private:
-  png_structp png_ = nullptr;
-  png_infop info_ = nullptr;
-};
-
 }  // namespace
 
 std::vector<std::byte> encode_png(const Picture& picture) {
-  std::vector<std::byte> bytes;
-  PngWriter writer;
-  png_set_write_fn(writer.png(), &bytes, append_png, nullptr);
-  png_set_compression_level(writer.png(), 3);
-  png_set_IHDR(writer.png(), writer.info(), picture.size.width, picture.size.height, 8,
-               PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-               PNG_FILTER_TYPE_DEFAULT);
-  png_write_info(writer.png(), writer.info());
-  for (int row = 0; row < picture.size.height; ++row) {
-    png_write_row(writer.png(),
-                  picture.rgb.data() + static_cast<std::ptrdiff_t>(row) * picture.size.width * 3);
-  }
-  png_write_end(writer.png(), nullptr);
-  return bytes;
+  return bole::encode_png(
+      view_packed(PixelFormat::rgb24, picture.size, std::as_bytes(std::span(picture.rgb))).value());
 }
 
 std::vector<std::byte> encode_jpeg(const Picture& picture, int quality) {
