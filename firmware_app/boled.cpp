@@ -7,9 +7,11 @@ namespace {
 
 void add_options(CLI::App& app) {
   const auto options = bole::add_daemon_options(app);
-  bole::add_replay_options(app, options);
-  bole::add_text_option(app, options, "--trace", "service.trace",
+  bole::add_source_option(app, options);
+  bole::add_publish_option(app, options);
+  bole::add_text_option(app, options, "--trace", "service.trace", "FILE",
                         "Write where the time of frames goes, for chrome://tracing");
+  bole::add_replay_options(app, options);
   app.callback([options] {
     const bole::DaemonConfig config = options->load();
     const bole::StopSignals stop;

@@ -1,12 +1,16 @@
 #include "daemon_options.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
+
+#include "base/errors.h"
 
 namespace bole {
 namespace {
 
 constexpr const char* kDefaultConfig = "/etc/bole/boled.toml";
+constexpr const char* kReplayGroup = "Of a replay";  // in --help
 
 std::string list_of(const std::vector<std::string>& texts) {
   std::string toml;
@@ -20,33 +24,37 @@ void add_seconds(CLI::App& app, const Options& options, const char* option, cons
                  const char* help) {
   app.add_option_function<std::string>(
          option,
-         [options, key](const std::string& value) {
-           options->settings.push_back({key, value});
+         [options, option, key](const std::string& value) {
+           options->named.push_back({option, {key, value}});
          },
          help)
-      ->type_name("SECONDS");
+      ->type_name("SECONDS")
+      ->group(kReplayGroup);
 }
 
 void add_switch(CLI::App& app, const Options& options, const char* option, const char* key,
                 const char* help) {
   app.add_flag_function(
-      option,
-      [options, key](std::int64_t) {
-        options->settings.push_back({key, "true"});
-      },
-      help);
+         option,
+         [options, option, key](std::int64_t) {
+           options->named.push_back({option, {key, "true"}});
+         },
+         help)
+      ->group(kReplayGroup);
 }
 
 }  // namespace
 
-void add_text_option(CLI::App& app, const Options& options, const char* option, const char* key,
-                     const char* help) {
-  app.add_option_function<std::string>(
-      option,
-      [options, key](const std::string& value) {
-        options->settings.push_back({key, toml_text(value)});
-      },
-      help);
+CLI::Option* add_text_option(CLI::App& app, const Options& options, const char* option,
+                             const char* key, const char* type, const char* help) {
+  return app
+      .add_option_function<std::string>(
+          option,
+          [options, option, key](const std::string& value) {
+            options->named.push_back({option, {key, toml_text(value)}});
+          },
+          help)
+      ->type_name(type);
 }
 
 DaemonConfig DaemonOptions::load() const {
@@ -56,42 +64,64 @@ DaemonConfig DaemonOptions::load() const {
   } else if (std::filesystem::exists(kDefaultConfig)) {
     file = kDefaultConfig;
   }
-  std::vector<Setting> all = settings;
-  if (!publish.empty()) all.push_back({"publish.to", list_of(publish)});
+  std::vector<Setting> all = set;
+  for (const auto& [option, setting] : named) {
+    if (std::ranges::find(set, setting.key, &Setting::key) != set.end()) {
+      throw ConfigError("--set", setting.key, "is what " + option + " sets, too",
+                        "give one of the two");
+    }
+    all.push_back(setting);
+  }
   return load_daemon_config(file, all);
 }
 
 std::shared_ptr<DaemonOptions> add_daemon_options(CLI::App& app) {
   auto options = std::make_shared<DaemonOptions>();
-  app.add_option(
-      "--config", options->config,
-      std::string("Configuration; by default ") + kDefaultConfig + " where there is one");
-  add_text_option(app, options, "--camera", "camera.file", "camera.toml");
-  add_text_option(app, options, "--source", "source.uri",
-                  "v4l2:DEVICE, libcamera:ID or replay:PATH");
-  app.add_option("--publish", options->publish,
-                 "lcm, zenoh, jsonl:PATH, jsonl:- for standard output; several with commas")
-      ->delimiter(',');
+  app.add_option("--config", options->config,
+                 std::string("Configuration; by default ") + kDefaultConfig + " where there is one")
+      ->type_name("FILE");
   app.add_option_function<std::vector<std::string>>(
          "--set",
          [options](const std::vector<std::string>& pairs) {
-           for (const auto& pair : pairs) options->settings.push_back(parse_setting(pair));
+           for (const auto& pair : pairs) options->set.push_back(parse_setting(pair));
          },
-         "KEY=VALUE of the configuration, as TOML; a bare word is a string")
+         "A key of the configuration and its value as TOML, where a bare word is a string; may be "
+         "given again, the last of a key holds")
+      ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
+  add_text_option(app, options, "--camera", "camera.file", "FILE",
+                  "The camera's camera.toml; by default /etc/bole/camera/camera.toml");
   return options;
 }
 
+void add_source_option(CLI::App& app, const Options& options) {
+  add_text_option(app, options, "--source", "source.uri", "SOURCE",
+                  "v4l2:DEVICE, libcamera:ID or replay:PATH");
+}
+
+void add_publish_option(CLI::App& app, const Options& options) {
+  app.add_option_function<std::vector<std::string>>(
+         "--publish",
+         [options](const std::vector<std::string>& targets) {
+           options->named.push_back({"--publish", {"publish.to", list_of(targets)}});
+         },
+         "lcm, zenoh, jsonl:PATH or jsonl:- for standard output; several with commas")
+      ->type_name("BUS")
+      ->delimiter(',');
+}
+
 void add_replay_options(CLI::App& app, const Options& options) {
-  add_text_option(app, options, "--pace", "source.pace",
-                  "Of a replay: realtime, rate:N, fast, lockstep");
-  add_switch(app, options, "--loop", "source.loop", "Replay again and again");
+  add_text_option(app, options, "--pace", "source.pace", "PACE",
+                  "realtime (the default), rate:N frames a second, fast, or lockstep: no drops")
+      ->group(kReplayGroup);
+  add_switch(app, options, "--loop", "source.loop", "Begin again at the end");
   add_switch(app, options, "--restamp", "source.restamp",
-             "Stamp replayed frames with the time of the replay");
-  add_seconds(app, options, "--start", "source.start_s", "Of a replay: what to leave out");
-  add_seconds(app, options, "--end", "source.end_s", "Of a replay: when it ends");
-  add_text_option(app, options, "--faults", "source.faults",
-                  "Of a replay: a script of what goes wrong");
+             "Stamp frames with the time of the replay, not of the recording");
+  add_seconds(app, options, "--start", "source.start_s", "What to leave out at the beginning");
+  add_seconds(app, options, "--end", "source.end_s", "When to end, counted from the beginning");
+  add_text_option(app, options, "--faults", "source.faults", "FILE",
+                  "A script of what goes wrong with the camera")
+      ->group(kReplayGroup);
 }
 
 }  // namespace bole

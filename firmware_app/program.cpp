@@ -55,6 +55,7 @@ int fail(const char* name, const char* problem, int code) {
 int run_program(const char* name, const char* description, void (*set_up)(CLI::App&), int argc,
                 char** argv) {
   CLI::App app{description, name};
+  app.footer("Exit code: 0 done, 2 wrong usage or configuration, 1 anything else.");
   try {
     set_up_log();
     set_up(app);

@@ -22,7 +22,7 @@ void add_cameras(CLI::App& app) {
   auto json = std::make_shared<bool>(false);
   CLI::App* command =
       app.add_subcommand("cameras", "Lists the cameras that are there and what they can do");
-  command->add_flag("--json", *json, "A JSON array");
+  command->add_flag("--json", *json, "Print them as an array of JSON");
   command->callback([json] { cameras(*json); });
 }
 

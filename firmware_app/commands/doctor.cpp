@@ -25,7 +25,7 @@ void doctor(const DaemonOptions& options, bool json) {
                   finding.detail.c_str());
     }
   }
-  if (problems > 0) throw std::runtime_error(std::to_string(problems) + " problems found");
+  if (problems > 0) throw std::runtime_error("problems found: " + std::to_string(problems));
 }
 
 }  // namespace
@@ -34,8 +34,10 @@ void add_doctor(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("doctor", "Checks what boled needs and says how to mend what is missing");
   const auto options = add_daemon_options(*command);
+  add_source_option(*command, options);
+  add_publish_option(*command, options);
   const auto json = std::make_shared<bool>(false);
-  command->add_flag("--json", *json, "A line of JSON a check");
+  command->add_flag("--json", *json, "Print a line of JSON a check");
   command->callback([options, json] { doctor(*options, *json); });
 }
 

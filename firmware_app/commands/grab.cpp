@@ -20,8 +20,11 @@ void add_grab(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("grab", "Writes one frame of a camera to files, raw and un-warped");
   const auto options = add_daemon_options(*command);
+  add_source_option(*command, options);
   const auto out = std::make_shared<std::string>("frame");
-  command->add_option("--out", *out, "Path of the files, without ending")->capture_default_str();
+  command->add_option("--out", *out, "Path of the files, without ending")
+      ->type_name("PATH")
+      ->capture_default_str();
   command->callback([options, out] { grab(*options, *out); });
 }
 

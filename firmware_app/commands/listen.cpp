@@ -194,17 +194,20 @@ void listen(const ListenOptions& options) {
 void add_listen(CLI::App& app) {
   auto options = std::make_shared<ListenOptions>();
   CLI::App* command = app.add_subcommand("listen", "Shows the lists and states on a bus");
-  CLI::Option* lcm =
-      command->add_option("--lcm", options->lcm_url, "LCM's address")->capture_default_str();
+  CLI::Option* lcm = command->add_option("--lcm", options->lcm_url, "LCM's address")
+                         ->type_name("URL")
+                         ->capture_default_str();
   command
       ->add_option("--zenoh", options->zenoh_endpoint,
-                   "Listen on Zenoh instead, at an endpoint as tcp/127.0.0.1:7447")
+                   "Listen on Zenoh instead, as at tcp/127.0.0.1:7447")
+      ->type_name("ENDPOINT")
       ->excludes(lcm);
-  command->add_option("--count", options->count, "Stop after so many lists; 0 = never")
+  command->add_option("--count", options->count, "Stop after so many lists; 0: never")
+      ->type_name("LISTS")
       ->capture_default_str()
       ->check(CLI::Range(0, 1'000'000'000));
   command->add_flag("--json", options->json,
-                    "A line of JSON a message, and one a stream at the end");
+                    "Print a line of JSON a message, and one a stream at the end");
   command->callback([options] { listen(*options); });
 }
 

@@ -48,19 +48,24 @@ void info(const Options& options) {
 
 void add_lut(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("lut", "Warp tables");
+  CLI::App* command = app.add_subcommand("lut", "Builds and describes warp tables");
   command->require_subcommand(1);
 
   CLI::App* build_command = command->add_subcommand("build", "Builds a camera's table");
-  build_command->add_option("--camera", options->camera, "camera.toml")->required();
-  build_command->add_option("--out", options->table, "File to write; by default kept in the cache");
+  build_command->add_option("--camera", options->camera, "camera.toml")
+      ->type_name("FILE")
+      ->required();
+  build_command->add_option("--out", options->table, "File to write; by default kept in the cache")
+      ->type_name("FILE");
   build_command->callback([options] { build(*options); });
 
   CLI::App* info_command =
       command->add_subcommand("info", "Checks a table against its camera and describes it");
-  info_command->add_option("--camera", options->camera, "camera.toml")->required();
-  info_command->add_option("TABLE", options->table, "The table's file")->required();
-  info_command->add_flag("--json", options->json, "one line of JSON");
+  info_command->add_option("--camera", options->camera, "camera.toml")
+      ->type_name("FILE")
+      ->required();
+  info_command->add_option("TABLE", options->table, "The table's file")->type_name("")->required();
+  info_command->add_flag("--json", options->json, "Print one line of JSON");
   info_command->callback([options] { info(*options); });
 }
 

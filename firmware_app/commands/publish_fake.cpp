@@ -96,14 +96,19 @@ void add_publish_fake(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "publish-fake", "Publishes lists of a simulated drive as boled would, without a camera");
   const auto daemon = add_daemon_options(*command);
+  add_publish_option(*command, daemon);
   const auto options = std::make_shared<Options>();
   command->add_option("--rate", options->rate_hz, "Lists a second")
+      ->type_name("HZ")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 1000.0));
-  command->add_option("--count", options->count, "Stop after so many lists; 0 = never")
+  command->add_option("--count", options->count, "Stop after so many lists; 0: never")
+      ->type_name("LISTS")
       ->capture_default_str()
       ->check(CLI::Range(0, 1'000'000'000));
-  command->add_option("--seed", options->seed, "Of the wood")->capture_default_str();
+  command->add_option("--seed", options->seed, "Of the wood")
+      ->type_name("NUMBER")
+      ->capture_default_str();
   command->callback([daemon, options] { publish_fake(daemon->load(), *options); });
 }
 

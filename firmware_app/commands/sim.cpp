@@ -51,22 +51,29 @@ void add_sim(CLI::App& app) {
   auto options = std::make_shared<SimCommand>();
   CLI::App* command = app.add_subcommand(
       "sim", "Renders a robot's drive through a wood, with the truth, ready to be replayed");
-  command->add_option("--out", options->out, "Folder to write")->required();
-  command->add_option("--frames", options->recording.frames, "Frames, ten a second")
+  command->add_option("--out", options->out, "Folder to write")->type_name("FOLDER")->required();
+  command->add_option("--frames", options->recording.frames, "How many, ten a second")
+      ->type_name("FRAMES")
       ->required()
       ->check(CLI::Range(1, 100000));
   command->add_option("--seed", options->recording.seed, "All that is random follows from it")
+      ->type_name("NUMBER")
       ->required();
   command
       ->add_option("--camera", options->camera,
                    "camera.toml to see through, or \"invented\" for one that follows from the seed")
+      ->type_name("FILE")
       ->capture_default_str();
   command->add_option("--format", options->recording.format, "png, jpg or a raw pixel format")
+      ->type_name("FORMAT")
       ->capture_default_str();
   command->add_option("--preset", options->preset, "drive, varied or treeless")
+      ->type_name("PRESET")
       ->capture_default_str();
-  command->add_option("--impair", options->impairment,
-                      "darkness, glare, covered, smeared or frozen, from the first frame on");
+  command
+      ->add_option("--impair", options->impairment,
+                   "darkness, glare, covered, smeared or frozen, from the first frame on")
+      ->type_name("HOW");
   command->callback([options] { simulate_drive(*options); });
 }
 

@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import time
 
@@ -41,13 +42,24 @@ def test_wrong_usage_of_bolectl_is_one_short_line(bolectl, arguments, named):
     (["--config", "/nonexistent.toml"], "/nonexistent.toml"),
     (["--nonsense"], "--nonsense"),
     (["--publish", "lcm,lcm"], "publish.to"),
-    (["--set", 'source.uri="tape"'], "source.uri"),
-    (["--set", 'source.uri="v4l2:/dev/video9"', "--loop"], "source.loop"),
+    (["--loop", "--set", "source.loop=false"], "source.loop"),
+    (["--publish", "lcm", "--set", 'publish.to=["zenoh"]'], "--publish"),
+    (["--set", 'source.uri="v4l2:/dev/video9"'], "--source"),
 ])
 def test_wrong_usage_is_one_line_and_exit_code_2(boled, arguments, named):
     run = boled(*arguments)
     assert run.returncode == 2
     assert run.stdout == ""
+    assert named in run.stderr and run.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("source, arguments, named", [
+    ("tape", [], "source.uri"),
+    ("v4l2:/dev/video9", ["--loop"], "source.loop"),
+])
+def test_a_source_that_does_not_fit_is_one_line_and_exit_code_2(boled, source, arguments, named):
+    run = boled(*arguments, source=source)
+    assert run.returncode == 2
     assert named in run.stderr and run.stderr.count("\n") == 1
 
 
@@ -122,6 +134,19 @@ def test_lut_builds_a_table_that_fits_its_camera_only_and_whole(bolectl, drive, 
     refused = bolectl("lut", "info", "--camera", camera, table)
     assert refused.returncode == 2
     assert str(table) in refused.stderr and refused.stderr.count("\n") == 1
+
+
+def test_eval_keeps_ids_over_two_frames_of_one_instant_as_the_daemon_does(bolectl, drive, tmp_path):
+    truth = json.loads((drive / "truth.json").read_text())
+    first = truth["frames"][0]
+    truth["frames"] = [first, first | {"file": "again.jpg"}]
+    (tmp_path / "truth.json").write_text(json.dumps(truth))
+    shutil.copy(drive / first["file"], tmp_path / first["file"])
+    shutil.copy(drive / first["file"], tmp_path / "again.jpg")
+    run = bolectl("eval", "--json", "--camera", drive / "camera.toml", "--truth",
+                  tmp_path / "truth.json", tmp_path)
+    tracked = json.loads(run.stdout)["bole"]["tracked"]
+    assert tracked["id_switches"] == 0 and tracked["recall"] > 0
 
 
 def test_sim_leaves_no_frames_of_two_recordings_in_one_folder(bolectl, tmp_path):
