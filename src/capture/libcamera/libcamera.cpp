@@ -16,7 +16,8 @@ const LibcameraPlugin& load() {
     using Entry = const LibcameraPlugin& (*)();
     return reinterpret_cast<Entry>(load_plugin_symbol("bole_libcamera.so", "bole_libcamera"))();
   } catch (const std::runtime_error& error) {
-    throw ConfigError("", "", error.what(), "install libcamera's plug-in, or use v4l2:DEVICE");
+    throw ConfigError("", "", error.what(),
+                      "install the package bole-libcamera, or use v4l2:DEVICE");
   }
 }
 

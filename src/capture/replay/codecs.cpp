@@ -18,7 +18,8 @@ const ReplayCodecs& load() {
     using Entry = const ReplayCodecs& (*)();
     return reinterpret_cast<Entry>(load_plugin_symbol(kFile, "bole_replay_codecs"))();
   } catch (const std::runtime_error& error) {
-    throw ConfigError("", "", error.what(), "install it, or replay JPEG, PNG or raw frames");
+    throw ConfigError("", "", error.what(),
+                      "install the package bole-replay-codecs, or replay JPEG, PNG or raw frames");
   }
 }
 

@@ -1,7 +1,6 @@
 """The service under systemd: killed, stopped, its camera frozen and pulled out."""
 
 import pathlib
-import re
 import shutil
 import subprocess
 import time
@@ -40,12 +39,12 @@ def run():
 
 def install():
     """As `cmake --install` would."""
-    unit = environment.build("systemd/boled.service")
-    program = re.search(r"ExecStart=(\S+)", unit.read_text())[1]
     if not (built := environment.build("firmware_app/boled")).exists():
         raise Skip("boled is not built")
-    shutil.copy(built, program)
-    shutil.copy(unit, "/etc/systemd/system/")
+    shutil.copy(built, "/usr/local/bin")
+    unit = environment.source("systemd/boled.service.in").read_text()
+    pathlib.Path("/etc/systemd/system/boled.service").write_text(
+        unit.replace("@bindir@", "/usr/local/bin"))
     pathlib.Path("/etc/udev/rules.d").mkdir(exist_ok=True)
     shutil.copy(environment.source("systemd/70-bole-cameras.rules"), "/etc/udev/rules.d/")
     subprocess.run(["udevadm", "control", "--reload"], check=True)
