@@ -113,16 +113,28 @@ HWY_INLINE void store_all_rows(__m512i pixels, WarpOutput out) {
   two(_mm512_extracti32x4_epi32(pixels, 3));
 }
 
+// Half a tile, out of one of its windows.
+template <int kPixelBytes>
+HWY_INLINE __m512i pick(const SampledImage& image, WarpWindows::Origin origin,
+                        const WarpWindow& window) {
+  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(image.bytes.data());
+  const std::ptrdiff_t stride = image.stride;
+  const std::uint8_t* const from = bytes + origin.row * stride + origin.column * kPixelBytes;
+  return interpolate(load_window<kPixelBytes>(from, stride, image.lead == 1), window);
+}
+
 // Tile number `tile` of the strip, one of those that fit.
 template <int kPixelBytes>
 HWY_INLINE void warp_tile_by_windows(const WarpStrip& strip, std::size_t number, int tile) {
-  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(strip.image.bytes.data());
-  const std::ptrdiff_t stride = strip.image.stride;
   for (int half = 0; half < 2; ++half) {
-    const auto [row, column] = strip.windows.tile(number).origins[static_cast<std::size_t>(half)];
-    const WindowSamples samples = load_window<kPixelBytes>(
-        bytes + row * stride + column * kPixelBytes, stride, strip.image.lead == 1);
-    const __m512i pixels = interpolate(samples, strip.windows.windows(number)[half]);
+    const auto [left, right] = strip.windows.tile(number).halves[static_cast<std::size_t>(half)];
+    const WarpWindow& window = strip.windows.windows(number)[half];
+    __m512i pixels = pick<kPixelBytes>(strip.image, left, window);
+    if (right != left) {
+      constexpr __mmask64 kRightColumns = 0xf0f0f0f0f0f0f0f0;  // of each row's eight
+      pixels = _mm512_mask_blend_epi8(kRightColumns, pixels,
+                                      pick<kPixelBytes>(strip.image, right, window));
+    }
     const WarpOutput out{strip.out.pixels + tile * kTileColumns + half * WarpWindow::kColumns,
                          strip.out.stride};
     if (strip.rows == kTileRows) {

@@ -1,6 +1,7 @@
 #include "warp/warp_windows.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace bole {
 namespace {
@@ -16,38 +17,60 @@ Place place_of(const WarpTile& tile, WarpEntry entry) {
           tile.column + static_cast<int>((entry & 0xffff) >> kWarpBits)};
 }
 
-// Calls visit(pixel of the half, entry).
+// Columns [first, last) of a tile, within one of its halves.
+struct Columns {
+  int first, last;
+};
+
+// Calls visit(pixel of the half, where its source is).
 template <class Visit>
-void for_each_pixel(const WarpEntry* entries, int half, Visit visit) {
-  for (int pixel = 0; pixel < WarpWindow::kPixels; ++pixel) {
-    const int row = pixel / WarpWindow::kColumns, column = pixel % WarpWindow::kColumns;
-    visit(static_cast<std::size_t>(pixel),
-          entries[row * kTileColumns + half * WarpWindow::kColumns + column]);
+void for_each_source(const WarpTile& tile, const WarpEntry* entries, Columns columns, Visit visit) {
+  for (int row = 0; row < kTileRows; ++row) {
+    for (int column = columns.first; column < columns.last; ++column) {
+      const int pixel = row * WarpWindow::kColumns + column % WarpWindow::kColumns;
+      const WarpEntry entry = entries[row * kTileColumns + column];
+      visit(static_cast<std::size_t>(pixel), entry, place_of(tile, entry));
+    }
   }
 }
 
-// Fills `window`; false when the sources lie too far apart.
-bool fill(const WarpTile& tile, const WarpEntry* entries, int half, ImageSize size,
-          WarpWindows::Origin& origin, WarpWindow& window) {
+// A window that holds all sources of these columns; none where they lie too far apart.
+std::optional<WarpWindows::Origin> window_about(const WarpTile& tile, const WarpEntry* entries,
+                                                Columns columns, ImageSize size) {
   Place first{size.height - kSide, size.width - kSide}, last{0, 0};
-  for_each_pixel(entries, half, [&](std::size_t, WarpEntry entry) {
-    const Place place = place_of(tile, entry);
+  for_each_source(tile, entries, columns, [&](std::size_t, WarpEntry, Place place) {
     first = {std::min(first.row, place.row), std::min(first.column, place.column)};
     last = {std::max(last.row, place.row), std::max(last.column, place.column)};
   });
   if (first.row < 0 || first.column < 0 || last.row + 1 >= first.row + kSide ||
       last.column + 1 >= first.column + kSide) {
-    return false;
+    return std::nullopt;
   }
-  origin = {static_cast<std::uint16_t>(first.row), static_cast<std::uint16_t>(first.column)};
-  for_each_pixel(entries, half, [&](std::size_t pixel, WarpEntry entry) {
-    const Place place = place_of(tile, entry);
+  return WarpWindows::Origin{static_cast<std::uint16_t>(first.row),
+                             static_cast<std::uint16_t>(first.column)};
+}
+
+void fill(const WarpTile& tile, const WarpEntry* entries, Columns columns,
+          WarpWindows::Origin origin, WarpWindow& window) {
+  for_each_source(tile, entries, columns, [&](std::size_t pixel, WarpEntry entry, Place place) {
     window.place[pixel] =
-        static_cast<std::uint8_t>(kSide * (place.row - first.row) + place.column - first.column);
+        static_cast<std::uint8_t>(kSide * (place.row - origin.row) + place.column - origin.column);
     window.column_step[pixel] = static_cast<std::uint8_t>(entry % kWarpSteps);
     window.row_step[pixel] = static_cast<std::uint8_t>((entry >> 16) % kWarpSteps);
   });
-  return true;
+}
+
+// Fills `window` for the columns from `start` on; nothing when two windows do not suffice.
+std::optional<WarpWindows::Half> fill_half(const WarpTile& tile, const WarpEntry* entries,
+                                           int start, ImageSize size, WarpWindow& window) {
+  const int middle = start + WarpWindow::kColumns / 2, end = start + WarpWindow::kColumns;
+  const auto whole = window_about(tile, entries, {start, end}, size);
+  const auto left = whole ? whole : window_about(tile, entries, {start, middle}, size);
+  const auto right = whole ? whole : window_about(tile, entries, {middle, end}, size);
+  if (!left || !right) return std::nullopt;
+  fill(tile, entries, {start, middle}, *left, window);
+  fill(tile, entries, {middle, end}, *right, window);
+  return WarpWindows::Half{*left, *right};
 }
 
 }  // namespace
@@ -55,12 +78,14 @@ bool fill(const WarpTile& tile, const WarpEntry* entries, int half, ImageSize si
 WarpWindows::WarpWindows(const WarpTable& table)
     : tiles_(table.tiles().size()), windows_(2 * table.tiles().size()) {
   for (std::size_t t = 0; t < tiles_.size(); ++t) {
-    const auto fits = [&](int half) {
-      const auto h = static_cast<std::size_t>(half);
-      return fill(table.tiles()[t], &table.entries()[t * kTilePixels], half, table.image_size(),
-                  tiles_[t].origins[h], windows_[2 * t + h]);
-    };
-    tiles_[t].fits = fits(0) && fits(1);
+    tiles_[t].fits = true;
+    for (std::size_t h = 0; h < 2; ++h) {
+      const auto half = fill_half(table.tiles()[t], &table.entries()[t * kTilePixels],
+                                  static_cast<int>(h) * WarpWindow::kColumns, table.image_size(),
+                                  windows_[2 * t + h]);
+      tiles_[t].fits = tiles_[t].fits && half;
+      tiles_[t].halves[h] = half.value_or(Half{});
+    }
   }
 }
 

@@ -9,8 +9,9 @@
 namespace bole {
 
 /// The sources of half a tile, eight by eight panorama pixels, that lie in a window of 16 x 16
-/// source pixels. A processor that can look bytes up in 256 of them at once (see warp_rows.cpp)
-/// reads the window once and picks all pixels out of it.
+/// source pixels, or in two, one for the left four columns and one for the right four. A processor
+/// that can look bytes up in 256 of them at once (see warp_rows.cpp) reads a window once and picks
+/// all pixels out of it.
 struct alignas(64) WarpWindow {
   static constexpr int kSide = 16;    ///< of the window, source pixels
   static constexpr int kColumns = 8;  ///< of the half tile
@@ -21,8 +22,8 @@ struct alignas(64) WarpWindow {
   std::array<std::uint8_t, kPixels> place, column_step, row_step;
 };
 
-/// A table's tiles as windows, where both halves of a tile fit in one each. It takes three quarters
-/// of the bytes of the table's own entries.
+/// A table's tiles as windows, where they fit in such. It takes three quarters of the bytes of the
+/// table's own entries.
 class WarpWindows {
  public:
   /// None.
@@ -30,16 +31,20 @@ class WarpWindows {
   explicit WarpWindows(const WarpTable& table);
 
   struct Origin {
-    std::uint16_t row, column;
+    std::uint16_t row = 0, column = 0;
+    friend bool operator==(const Origin&, const Origin&) = default;
+  };
+  struct Half {
+    Origin left, right;  ///< of the windows; the same where one is enough
   };
   struct Tile {
     bool fits = false;
-    std::array<Origin, 2> origins{};  ///< of the windows, left half first
+    std::array<Half, 2> halves{};  ///< the left one first
   };
 
   bool empty() const { return tiles_.empty(); }
   const Tile& tile(std::size_t number) const { return tiles_[number]; }
-  /// The two windows of a tile that fits.
+  /// The two halves of a tile that fits.
   const WarpWindow* windows(std::size_t number) const { return &windows_[2 * number]; }
 
  private:
