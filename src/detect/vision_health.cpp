@@ -10,6 +10,10 @@ namespace bole {
 namespace {
 
 constexpr int kRowStep = 6, kColumnStep = 4;
+// Where sharpness is read.
+constexpr int kSharpFrom = 2, kSharpStep = 2 * kRowStep;  // rows
+constexpr int kFarPlaces = 4, kFar = kFarPlaces * kColumnStep;
+constexpr int kNoise = 8;  // in a sum of four pixels
 constexpr int kFramesToTell = 3;
 constexpr int kRepeatsOfFrozen = 3;
 
@@ -31,51 +35,32 @@ float share(std::uint32_t part, std::uint32_t of) {
   return of > 0 ? static_cast<float>(part) / static_cast<float>(of) : 0;
 }
 
-// Of a row's whole words, going on from the rows before.
-std::uint64_t checksum(const std::uint8_t* pixels, int width, std::uint64_t before) {
-  std::uint64_t checksum = before;
-  for (int x = 0; x + 8 <= width; x += 8) {
+// Of a row's whole words, going on from the rows before: in four parts, since each step waits for
+// the one before.
+using Checksum = std::array<std::uint64_t, 4>;
+void add_row(const std::uint8_t* pixels, int width, Checksum& checksum) {
+  const auto add = [](std::uint64_t& part, const std::uint8_t* from) {
     std::uint64_t word;
-    std::memcpy(&word, pixels + x, sizeof word);
-    checksum = (checksum ^ word) * 0x9e3779b97f4a7c15ULL;
-    checksum ^= checksum >> 32;
-  }
-  return checksum;
+    std::memcpy(&word, from, sizeof word);
+    part = (part ^ word) * 0x9e3779b97f4a7c15ULL;
+    part ^= part >> 32;
+  };
+  int x = 0;
+  for (; x + 32 <= width; x += 32)
+    for (int k = 0; k < 4; ++k) add(checksum[k], pixels + x + 8 * k);
+  for (; x + 8 <= width; x += 8) add(checksum[0], pixels + x);
 }
 
 // The grey level below which `part` of the pixels lie.
 int quantile(const Histogram& histogram, double part) {
-  const double total = std::accumulate(histogram.begin(), histogram.end(), 0.0);
-  double below = 0;
+  const auto total = std::accumulate(histogram.begin(), histogram.end(), std::uint32_t{0});
+  const auto wanted = static_cast<std::uint32_t>(part * total);
+  std::uint32_t below = 0;
   for (int level = 0; level < 256; ++level) {
     below += histogram[level];
-    if (below > part * total) return level;
+    if (below > wanted) return level;
   }
   return 255;
-}
-
-// Fine over coarse structure along the rows: how much the brightness bends from one pair of columns
-// to the next, against how much it differs between pairs that lie far apart. What noise alone makes
-// counts in neither.
-float sharpness(const PanoramaView& panorama, const SeenMap& seen, int first, int last) {
-  constexpr int kFar = 16;
-  constexpr int kNoise = 8;  // in a sum of four pixels
-  const int width = panorama.geometry->width;
-  std::int64_t fine = 0, coarse = 0;
-  for (int row = 2; row + 2 < panorama.geometry->rows; row += 2 * kRowStep) {
-    const std::uint8_t* above = panorama.row(row);
-    const std::uint8_t* below = panorama.row(row + 1);
-    const std::uint8_t* ok = seen.pixels.data() + static_cast<std::size_t>(row) * width;
-    for (int x = first; x + kFar + 2 <= last; x += kColumnStep) {
-      if (!ok[x] || !ok[x + kFar]) continue;
-      const auto block = [&](int at) {
-        return above[at] + above[at + 1] + below[at] + below[at + 1];
-      };
-      fine += std::max(0, std::abs(block(x) - 2 * block(x + 2) + block(x + 4)) - kNoise);
-      coarse += std::max(0, std::abs(block(x) - block(x + kFar)) - kNoise);
-    }
-  }
-  return coarse > 0 ? static_cast<float>(fine) / static_cast<float>(coarse) : 0;
 }
 
 }  // namespace
@@ -100,7 +85,7 @@ std::string_view name(VisionHealth::Reason reason) {
 }
 
 VisionHealth::VisionHealth(const PanoramaGeometry& geometry, const SeenMap& seen)
-    : geometry_(geometry), seen_(seen) {
+    : geometry_(geometry) {
   for (int i = 0; i < kSectors; ++i) {
     Sector& sector = sectors_[i];
     sector.first = geometry.width * i / kSectors;
@@ -109,7 +94,70 @@ VisionHealth::VisionHealth(const PanoramaGeometry& geometry, const SeenMap& seen
     for (int x = sector.first; x < sector.last; ++x)
       seen_columns += seen.columns[x].last - seen.columns[x].first > geometry.rows / 4;
     sector.seen = 2 * seen_columns > sector.last - sector.first;
+    find_places(seen, sector);
+    even_.resize(std::max<std::size_t>(even_.size(), sector.places + kFarPlaces));
   }
+  odd_.resize(even_.size());
+  find_runs(seen);
+}
+
+void VisionHealth::find_runs(const SeenMap& seen) {
+  const int horizon = static_cast<int>(std::ceil(geometry_.horizon_row()));
+  for (int row = 0; row < geometry_.rows; row += kRowStep) {
+    const std::uint8_t* ok = seen.pixels.data() + static_cast<std::size_t>(row) * geometry_.width;
+    std::vector<Run>& runs = row < horizon ? above_ : ground_;
+    for (int i = 0; i < kSectors; ++i) {
+      for (int x = sectors_[i].first; x < sectors_[i].last; x += kColumnStep) {
+        if (!ok[x]) continue;
+        const Run last = runs.empty() ? Run{} : runs.back();
+        if (last.row != row || last.sector != i || last.last != x) runs.push_back({row, i, x, x});
+        runs.back().last = x + kColumnStep;
+        ground_pixels_ += row >= horizon;
+      }
+    }
+  }
+}
+
+void VisionHealth::find_places(const SeenMap& seen, Sector& sector) const {
+  const int columns = sector.last - sector.first;
+  sector.places = std::max(0, (columns - kFar - 2 + kColumnStep) / kColumnStep);
+  for (int row = kSharpFrom; row + 2 < geometry_.rows; row += kSharpStep) {
+    const std::uint8_t* ok = seen.pixels.data() + static_cast<std::size_t>(row) * geometry_.width;
+    for (int k = 0; k < sector.places; ++k) {
+      const int x = sector.first + k * kColumnStep;
+      sector.comparable.push_back(ok[x] && ok[x + kFar] ? 1 : 0);
+    }
+  }
+}
+
+// Fine over coarse structure along the rows: how much the brightness bends from one pair of columns
+// to the next, against how much it differs between pairs that lie far apart. What noise alone makes
+// counts in neither.
+float VisionHealth::sharpness(const PanoramaView& panorama, const Sector& sector) {
+  const std::uint8_t* comparable = sector.comparable.data();
+  std::int16_t* const even = even_.data();
+  std::int16_t* const odd = odd_.data();
+  std::int64_t fine = 0, coarse = 0;
+  for (int row = kSharpFrom; row + 2 < geometry_.rows; row += kSharpStep) {
+    const std::uint8_t* above = panorama.row(row) + sector.first;
+    const std::uint8_t* below = panorama.row(row + 1) + sector.first;
+    const auto block = [&](int x) {
+      return static_cast<std::int16_t>(above[x] + above[x + 1] + below[x] + below[x + 1]);
+    };
+    for (int k = 0; k < sector.places + kFarPlaces; ++k) even[k] = block(k * kColumnStep);
+    for (int k = 0; k < sector.places; ++k) odd[k] = block(k * kColumnStep + 2);
+    int fine_here = 0, coarse_here = 0;
+    for (int k = 0; k < sector.places; ++k) {
+      const int bend = std::abs(even[k] - 2 * odd[k] + even[k + 1]) - kNoise;
+      const int difference = std::abs(even[k] - even[k + kFarPlaces]) - kNoise;
+      fine_here += comparable[k] * std::max(0, bend);
+      coarse_here += comparable[k] * std::max(0, difference);
+    }
+    comparable += sector.places;
+    fine += fine_here;
+    coarse += coarse_here;
+  }
+  return coarse > 0 ? static_cast<float>(fine) / static_cast<float>(coarse) : 0;
 }
 
 void VisionHealth::measure(const PanoramaView& panorama) {
@@ -119,29 +167,31 @@ void VisionHealth::measure(const PanoramaView& panorama) {
 }
 
 void VisionHealth::count(const PanoramaView& panorama) {
-  const int width = geometry_.width;
-  const int horizon = static_cast<int>(std::ceil(geometry_.horizon_row()));
-  statistics_.checksum = 0;
-  ground_ = saturated_ground_ = 0;
+  Checksum checksum{};
+  for (int row = 0; row < geometry_.rows; row += kRowStep)
+    add_row(panorama.row(row), geometry_.width, checksum);
+  statistics_.checksum = std::accumulate(
+      checksum.begin(), checksum.end(), std::uint64_t{0},
+      [](std::uint64_t all, std::uint64_t part) { return all * 0x9e3779b97f4a7c15ULL + part; });
   for (auto& histogram : histograms_) histogram.fill(0);
-  for (int row = 0; row < geometry_.rows; row += kRowStep) {
-    const std::uint8_t* pixels = panorama.row(row);
-    const std::uint8_t* seen = seen_.pixels.data() + static_cast<std::size_t>(row) * width;
-    statistics_.checksum = checksum(pixels, width, statistics_.checksum);
-    for (int i = 0; i < kSectors; ++i) {
-      auto& histogram = histograms_[i];
-      std::uint32_t bright = 0, count = 0;
-      for (int x = sectors_[i].first; x < sectors_[i].last; x += kColumnStep) {
-        if (!seen[x]) continue;
-        ++histogram[pixels[x]];
-        ++count;
-        bright += pixels[x] >= kSaturated;
-      }
-      if (row < horizon) continue;
-      ground_ += count;
-      saturated_ground_ += bright;
+  const auto count_runs = [&](const std::vector<Run>& runs) {
+    for (const Run& run : runs) {
+      const std::uint8_t* pixels = panorama.row(run.row);
+      auto& histogram = histograms_[run.sector];
+      for (int x = run.first; x < run.last; x += kColumnStep) ++histogram[pixels[x]];
     }
-  }
+  };
+  count_runs(above_);
+  const std::uint32_t saturated_above = saturated();
+  count_runs(ground_);
+  saturated_ground_ = saturated() - saturated_above;
+}
+
+std::uint32_t VisionHealth::saturated() const {
+  std::uint32_t pixels = 0;
+  for (const Histogram& histogram : histograms_)
+    pixels = std::accumulate(histogram.begin() + kSaturated, histogram.end(), pixels);
+  return pixels;
 }
 
 void VisionHealth::measure_brightness() {
@@ -157,7 +207,7 @@ void VisionHealth::measure_brightness() {
   s.high = static_cast<float>(quantile(all, 0.95));
   s.saturated =
       static_cast<float>(std::accumulate(all.begin() + kSaturated, all.end(), 0.0) / total);
-  s.saturated_ground = share(saturated_ground_, ground_);
+  s.saturated_ground = share(saturated_ground_, ground_pixels_);
 }
 
 void VisionHealth::measure_sectors(const PanoramaView& panorama) {
@@ -171,7 +221,7 @@ void VisionHealth::measure_sectors(const PanoramaView& panorama) {
     spreads[seen++] = high - low;
     if (high - low < std::max(kEvenLevels, kEvenSpread * middle)) {
       ++even;
-    } else if (sharpness(panorama, seen_, sectors_[i].first, sectors_[i].last) > kSharpness) {
+    } else if (sharpness(panorama, sectors_[i]) > kSharpness) {
       ++sharp;
     }
   }

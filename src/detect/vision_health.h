@@ -16,7 +16,7 @@ class VisionHealth {
  public:
   enum class Reason : std::uint8_t { none, dark, glare, covered, smeared, frozen };
 
-  /// What `seen` views must outlive this.
+  /// `seen` is read here and no more.
   VisionHealth(const PanoramaGeometry& geometry, const SeenMap& seen);
 
   /// What is wrong with the view as of this frame, the gravest reason first. A reason must show in
@@ -56,12 +56,26 @@ class VisionHealth {
   struct Sector {
     int first = 0, last = 0;  // columns
     bool seen = false;
+    // Of each row where sharpness is read, one after the other, and each of its `places`: 1 where
+    // all that is compared is seen, else 0.
+    int places = 0;
+    std::vector<std::uint8_t> comparable;
   };
+  struct Run {  // every kColumnStep-th of these columns is seen
+    int row = -1, sector = 0, first = 0, last = 0;
+  };
+  void find_runs(const SeenMap& seen);
+  void find_places(const SeenMap& seen, Sector& sector) const;
+  float sharpness(const PanoramaView& panorama, const Sector& sector);
+  std::uint32_t saturated() const;
+
   PanoramaGeometry geometry_;
-  SeenMap seen_;
   std::array<Sector, kSectors> sectors_;
+  std::vector<Run> above_, ground_;       // the horizon; below it
+  std::uint32_t ground_pixels_ = 0;       // of the runs below it
+  std::vector<std::int16_t> even_, odd_;  // of one row and sector: see sharpness
   std::array<std::array<std::uint32_t, 256>, kSectors> histograms_{};
-  std::uint32_t ground_ = 0, saturated_ground_ = 0;  // pixels below the horizon
+  std::uint32_t saturated_ground_ = 0;  // pixels
   Statistics statistics_;
   std::uint64_t last_checksum_ = 0;
   int repeats_ = 0;
