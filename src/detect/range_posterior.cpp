@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <utility>
 
 namespace bole {
 namespace {
@@ -110,23 +109,32 @@ RangeEstimate RangePosterior::estimate(const TrunkSight& sight) const {
 // Half the deviation from `mean` within which 95 % of the mass lies: the standard deviation of a
 // normal distribution, and of one with far tails what its bulk has.
 double RangePosterior::half_of_95_percent(const Points& p, double mean, double mass) {
-  std::array<std::pair<double, double>, kSteps> by_deviation;  // deviation, weight
-  for (int i = 0; i < kSteps; ++i) by_deviation[i] = {std::abs(p.log_range[i] - mean), p.weight[i]};
-  // Sorted only as far as it takes.
-  auto first = by_deviation.begin(), last = by_deviation.end();
-  for (double outside = 0.95 * mass; last - first > 1;) {
-    const auto middle = first + (last - first) / 2;
-    std::nth_element(first, middle, last);
-    const double nearer = std::accumulate(
-        first, middle, 0.0, [](double sum, const auto& point) { return sum + point.second; });
-    if (nearer >= outside) {
-      last = middle;
+  // From the farthest point inwards, until more than 5 % lie outside. Along even ground's points
+  // the range falls, along the rough ones it rises: the farthest left of either is one of its ends.
+  struct Left {
+    int first, last;
+  };
+  const auto deviation = [&](int i) { return std::abs(p.log_range[i] - mean); };
+  const auto farthest = [&](Left left) {
+    return deviation(left.first) > deviation(left.last) ? left.first : left.last;
+  };
+  Left even{0, kEvenSteps - 1}, rough{kEvenSteps, kSteps - 1};
+  double outside = 0, reached = 0;
+  while (outside <= 0.05 * mass && (even.first <= even.last || rough.first <= rough.last)) {
+    const bool of_even =
+        rough.first > rough.last ||
+        (even.first <= even.last && deviation(farthest(even)) > deviation(farthest(rough)));
+    Left& left = of_even ? even : rough;
+    const int point = farthest(left);
+    if (point == left.first) {
+      ++left.first;
     } else {
-      outside -= nearer;
-      first = middle;
+      --left.last;
     }
+    outside += p.weight[point];
+    reached = deviation(point);
   }
-  return first->first / 2;
+  return reached / 2;
 }
 
 }  // namespace bole
