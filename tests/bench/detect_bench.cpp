@@ -1,6 +1,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/bench_scene.h"
+#include "bench/paced.h"
 #include "detect/detector.h"
 #include "warp/warper.h"
 
@@ -38,6 +39,17 @@ void frame_to_trees(benchmark::State& state, ImageSize size, DetectorMode mode,
   }
 }
 
+void paced_frame_to_trees(benchmark::State& state, ImageSize size, DetectorMode mode) {
+  const Scene& made = scene(size);
+  const auto ring = ring_of(made.frame(PixelFormat::yuyv));
+  Warper warper(made.table);
+  const std::unique_ptr<Detector> detector = make_detector(mode, setup_of(made));
+  pace(state, [&](std::size_t k) {
+    const ImageView image = *view_packed(PixelFormat::yuyv, size, ring[k]);
+    benchmark::DoNotOptimize(detector->detect(warper.warp(image)).data());
+  });
+}
+
 const bool registered = [] {
   constexpr std::pair<DetectorMode, const char*> kModes[] = {{DetectorMode::paper, "paper"},
                                                              {DetectorMode::bole, "bole"}};
@@ -48,6 +60,9 @@ const bool registered = [] {
     };
     for (const auto& [mode, mode_name] : kModes) {
       add(mode_name, detect, mode);
+      if (size.width == 1280) {
+        add("paced/frame_to_trees/" + std::string(mode_name) + "/yuyv", paced_frame_to_trees, mode);
+      }
       for (const PixelFormat format : {PixelFormat::yuyv, PixelFormat::grey, PixelFormat::mjpeg}) {
         add("frame_to_trees/" + std::string(mode_name) + "/" + std::string(name(format)),
             frame_to_trees, mode, format);
