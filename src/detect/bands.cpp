@@ -16,7 +16,7 @@ Bands::Bands(const DetectorSetup& setup, int margin)
       wraps_(setup.panorama.wraps()),
       log_(255 * kRows + 1),
       row_sum_(width_),
-      sums_(static_cast<std::size_t>(count_) * pitch_),
+      sums_(static_cast<std::size_t>(count_) * pitch_ + kSpare),
       coarse_(static_cast<std::size_t>(count_) * coarse_pitch_),
       seen_(static_cast<std::size_t>(count_) * pitch_) {
   const auto log = [](int sum) {

@@ -26,6 +26,7 @@ class Bands {
   static constexpr int kMostColumns = 73;
   static constexpr int kMostFlank = 36;
   static constexpr int kCoarse = 32;  ///< columns between the whole sums
+  static constexpr int kSpare = 128;  ///< sums that may be read beyond the last band's
 
   /// `margin` columns are kept beyond either border.
   Bands(const DetectorSetup& setup, int margin);

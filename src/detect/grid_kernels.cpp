@@ -76,13 +76,62 @@ HWY_INLINE void FindColumns(const CellColumns& columns, GridBuffers& buffers) {
   }
 }
 
-// One by one: gathering them in vectors takes longer.
-HWY_INLINE void Gather(const CellColumns& columns, GridBuffers& buffers) {
+// 64 sums can be looked up at once, which Highway does not offer.
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+
+// The sums at each column and the next, out of the 32 kRegisters from the first border's column on.
+template <int kRegisters>
+HWY_INLINE void PickPairs(const CellColumns& columns, GridBuffers& buffers) {
+  const std::uint16_t* sums = columns.sums;
+  for (int band = 0; band < columns.bands; ++band, sums += columns.pitch) {
+    const std::int32_t first = buffers.columns[band][0];
+    __m512i all[kRegisters];
+    for (int k = 0; k < kRegisters; ++k) all[k] = _mm512_loadu_si512(sums + first + 32 * k);
+    const __m512i place =
+        _mm512_sub_epi32(_mm512_load_si512(buffers.columns[band]), _mm512_set1_epi32(first));
+    const __m512i places = _mm512_add_epi32(_mm512_or_si512(place, _mm512_slli_epi32(place, 16)),
+                                            _mm512_set1_epi32(1 << 16));
+    __m512i pairs = _mm512_permutex2var_epi16(all[0], places, all[1]);
+    if constexpr (kRegisters == 4) {
+      const __mmask32 beyond = _mm512_movepi16_mask(_mm512_slli_epi16(places, 9));  // 64 and more
+      pairs =
+          _mm512_mask_blend_epi16(beyond, pairs, _mm512_permutex2var_epi16(all[2], places, all[3]));
+    }
+    _mm512_store_si512(buffers.pairs[band], pairs);
+  }
+}
+
+// False where the borders lie too far apart.
+HWY_INLINE bool PickPairs(const CellColumns& columns, GridBuffers& buffers) {
+  static_assert(kGridLookahead == 128);
+  const float across = columns.borders[kGridAcross] - columns.borders[0];
+  if (across < 62) {
+    PickPairs<2>(columns, buffers);
+  } else if (across < 126) {
+    PickPairs<4>(columns, buffers);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+#else
+
+HWY_INLINE bool PickPairs(const CellColumns&, GridBuffers&) { return false; }
+
+#endif
+
+// One by one: gather instructions take longer.
+HWY_INLINE void GatherPairs(const CellColumns& columns, GridBuffers& buffers) {
   const std::uint16_t* sums = columns.sums;
   for (int band = 0; band < columns.bands; ++band, sums += columns.pitch) {
     for (int i = 0; i < kBorders; ++i)
       std::memcpy(&buffers.pairs[band][i], sums + buffers.columns[band][i], sizeof(std::int32_t));
   }
+}
+
+HWY_INLINE void Gather(const CellColumns& columns, GridBuffers& buffers) {
+  if (!PickPairs(columns, buffers)) GatherPairs(columns, buffers);
   if (!columns.coarse) return;
   const std::int32_t* coarse = columns.coarse;
   for (int band = 0; band < columns.bands; ++band, coarse += columns.coarse_pitch) {

@@ -12,6 +12,7 @@ inline constexpr int kGridHeights = 11;
 inline constexpr int kGridAcross = 12;
 inline constexpr int kGridLanes = 16;
 inline constexpr int kMostGridBands = 256;
+inline constexpr int kGridLookahead = 128;  ///< sums that may be read from the first border on
 
 /// Columns of cells that lean over the bands of a panorama.
 struct CellColumns {

@@ -145,6 +145,7 @@ float FeatureReader::read_but_foot(const Bands& bands, const TrunkShape& shape, 
                                    int first_band, Care care, RowLevels& levels,
                                    F::Values& out) const {
   static_assert(F::kHeights == kGridHeights && F::kAcross == kGridAcross);
+  static_assert(Bands::kSpare >= kGridLookahead);
   const float spread = read_grid(bands, shape, first_band, care, out.data());
   const auto f = static_cast<float>(focal_);
   const float w = shape.width();

@@ -290,7 +290,7 @@ TEST_P(Kernels, ReadCellsAsThePlainLoops) {
       for (int i = 0; i < kGridAcross; ++i) ASSERT_EQ(a[h][i], b[h][i]) << h << " " << i;
   };
   GridValues fast, plain, whole;
-  for (const float width : {0.6F, 3.3F, 41.7F}) {
+  for (const float width : {0.6F, 3.3F, 9.7F, 41.7F}) {
     for (const bool wide : {false, true}) {
       const GridStatistics of_fast = read_cells(columns(width, wide), rows, fast);
       const GridStatistics of_plain = read_cells_plain(columns(width, wide), rows, plain);
