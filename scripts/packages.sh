@@ -1,12 +1,12 @@
 # Debian packages that building and testing need; sourced by demo, test and .ci/run.
 # shellcheck shell=bash
 build_packages=(
-  build-essential ccache cmake git ninja-build pkg-config
+  build-essential ccache cmake file git ninja-build pkg-config
   libbenchmark-dev libcamera-dev libcli11-dev libgmock-dev libgtest-dev libhwy-dev liblcm-bin liblcm-dev
   libopencv-dev libpng-dev libspdlog-dev libsystemd-dev libtomlplusplus-dev libturbojpeg0-dev
   libyaml-cpp-dev nlohmann-json3-dev zlib1g-dev
 )
-check_packages=(clang-format clang-tidy file iproute2 openssl python3-venv)
+check_packages=(clang-format clang-tidy iproute2 openssl python3-venv)
 # The core's check on arm64: scripts/arm64-check.
 arm64_packages=(g++-aarch64-linux-gnu qemu-user)
 # The hardware-in-the-loop rig: the guest runs on the host's own root, so what it uses is installed
