@@ -52,7 +52,19 @@ Track::Track(std::int32_t id, Tree& tree)
                   Vec3{c * both, s * both, lasting}}};
   drop_ = drop_of(tree);
   tree.id = id_;
-  tree.score = score_.update(tree.score, 0);
+  judge(tree);
+}
+
+double Track::range_variance() const {
+  const Vec3 along{state_.x / range(), state_.y / range(), 0};
+  return dot(along, covariance_ * along) + squared(kScale * range());
+}
+
+void Track::judge(Tree& tree) {
+  ++sightings_;
+  const double seen = std::min(1.0, static_cast<double>(sightings_) / frames_);
+  tree.score = score_.update(tree.score, seen, std::sqrt(range_variance()) / range());
+  probability_ = tree.score;
 }
 
 // At the side of the trunk that is seen. Grass or a slope at the foot is in it and stays with the
@@ -65,6 +77,14 @@ void Track::scale(double factor) {
   state_.x *= factor;
   state_.y *= factor;
   diameter_ *= factor;
+}
+
+void Track::widen(const Tree& whole) {
+  const double known = range();
+  state_.x = known * std::cos(whole.bearing);
+  state_.y = known * std::sin(whole.bearing);
+  diameter_ = 2 * known * std::sin(whole.angular_width / 2);
+  diameter_variance_ = width_variance(whole);
 }
 
 ExpectedTrunk Track::after(const EgoMotion& motion) const {
@@ -96,6 +116,7 @@ void Track::move(const MotionEstimate& motion, double elapsed) {
   x.x += noise;
   y.y += noise;
   u.z += squared(kLasting) * (1 - kept * kept);
+  ++frames_;
   unseen_ += elapsed;
   doubtful_ += elapsed;
 }
@@ -135,26 +156,24 @@ void Track::see(Tree& tree) {
   diameter_ += gain * (seen - diameter_);
   diameter_variance_ = (1 - gain) * diameter_variance_ + squared(0.001);
 
-  tree.score = score_.update(tree.score, unseen_);
+  if (tree.score > kCredible) doubtful_ = 0;
+  judge(tree);
   drop_ += kNewDrop * (drop_of(tree) - drop_);
 
-  if (tree.score > kCredible) doubtful_ = 0;
   unseen_ = 0;
   write(tree);
 }
 
 void Track::write(Tree& tree) const {
   const Vec3 across = bearing_gradient();
-  const Vec3 along{state_.x / range(), state_.y / range(), 0};
-  const double range_variance = dot(along, covariance_ * along) + squared(kScale * range());
   tree.id = id_;
   tree.bearing = static_cast<float>(std::atan2(state_.y, state_.x));
   tree.range = static_cast<float>(range());
   tree.diameter = static_cast<float>(diameter_);
   tree.bearing_sigma = static_cast<float>(std::sqrt(dot(across, covariance_ * across)));
-  tree.range_sigma = static_cast<float>(std::sqrt(range_variance));
+  tree.range_sigma = static_cast<float>(std::sqrt(range_variance()));
   tree.diameter_sigma = static_cast<float>(
-      std::sqrt(diameter_variance_ + range_variance * squared(diameter_ / range())));
+      std::sqrt(diameter_variance_ + range_variance() * squared(diameter_ / range())));
   tree.angular_width = static_cast<float>(angular_width(diameter_, range()));
 }
 

@@ -49,14 +49,18 @@ class Track {
   double diameter() const { return diameter_; }
   double unseen() const { return unseen_; }      ///< seconds
   double doubtful() const { return doubtful_; }  ///< seconds since it last looked like a tree
-  double sightings() const { return score_.sightings(); }
-  double level() const { return score_.level(); }
+  int sightings() const { return sightings_; }
+  double probability() const { return probability_; }  ///< when it was last seen
   /// The world is larger by this factor than was thought.
   void scale(double factor);
+  /// What was seen so far was but a part of the tree: it is as wide as this, and stands there.
+  void widen(const Tree& whole);
   void forget() { unseen_ = std::numeric_limits<double>::infinity(); }
 
  private:
+  void judge(Tree& tree);
   void write(Tree& tree) const;
+  double range_variance() const;
   double drop_of(const Tree& tree) const;
   // Kalman's update by one number, `residual` = seen - expected, that grows by `gradient` with the
   // state.
@@ -70,6 +74,9 @@ class Track {
   double diameter_, diameter_variance_;
   double drop_;  // metres from the viewpoint's height down to the foot as it is seen
   double unseen_ = 0, doubtful_ = 0;
+  int sightings_ = 0;
+  int frames_ = 1;  // from the first sighting on
+  double probability_ = 0;
   TrackScore score_;
 };
 

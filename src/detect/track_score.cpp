@@ -6,9 +6,7 @@
 namespace bole {
 namespace {
 
-constexpr double kMemory = 2;    // seconds in which a sighting's weight falls to 1 / e
-constexpr double kDoubt = 0.25;  // sightings
-constexpr double kShift = 0.25, kNow = 0.99, kBefore = 0.78;
+constexpr double kShift = -3.05, kNow = 0.40, kBest = 0.84, kSteady = 2.06, kKnown = 1.19;
 
 double log_odds(double probability) {
   constexpr double kCertain = 1e-4;
@@ -18,16 +16,11 @@ double log_odds(double probability) {
 
 }  // namespace
 
-double TrackScore::level() const { return sum_ / (kDoubt + weight_); }
-
-float TrackScore::update(float score, double elapsed) {
-  const double kept = std::exp(-elapsed / kMemory);
-  sum_ *= kept;
-  weight_ *= kept;
+float TrackScore::update(float score, double seen, double range_share) {
   const double now = log_odds(score);
-  const double odds = kShift + kNow * now + kBefore * level();
-  sum_ += now;
-  weight_ += 1;
+  best_ = std::max(best_, now);
+  const double odds = kShift + kNow * now + kBest * best_ + kSteady * std::log(seen) -
+                      kKnown * std::log(range_share);
   return static_cast<float>(1 / (1 + std::exp(-odds)));
 }
 

@@ -1,29 +1,29 @@
 #pragma once
 
+#include <limits>
+
 namespace bole {
 
 /// The probability that there is a tree, given all that has been seen of it.
 ///
-/// The detector's log odds of one tree waver about a level that is the tree's own, and so do those
-/// of a rock that looks like one; frames that follow each other waver alike. So what counts beside
-/// this frame's log odds is the level of those before, as far as it can be known from their number:
-///   log odds = shift + now * l + before * sum(w l) / (doubt + sum(w)),
-/// the sums over the earlier sightings, w falling with their age. The constants are what
-/// `scripts/tracking FOLDER --fit` finds on drives.
+/// The detector's log odds of one tree waver with what it stands before and with the light, and so
+/// do those of a rock that looks like a tree; frames that follow each other waver alike, so that
+/// many doubtful ones say little more than one. What counts is this frame's log odds l, the highest
+/// that there ever were, in what share of the frames since the first it was seen, and whether the
+/// places seen along the robot's way are those of one thing that stands still, which shows in how
+/// well its range is known:
+///   log odds = shift + now * l + best * max(l) + steady * log(seen) + known * log(range /
+///   range_sigma).
+/// The constants are what `scripts/tracking FOLDER --fit` finds on drives.
 class TrackScore {
  public:
-  /// Takes in the score that the detector gives in this frame, `elapsed` seconds after the last
-  /// call. Answers the probability given this frame and those before.
-  float update(float score, double elapsed);
-
-  /// Number of sightings, the old ones fading.
-  double sightings() const { return weight_; }
-
-  /// Of the log odds, as far as the sightings tell it; 0 before the first.
-  double level() const;
+  /// Takes in the score that the detector gives in this frame. Answers the probability given this
+  /// frame and those before. `seen`: the share of the frames from the first sighting to this one
+  /// that showed it. `range_share`: range_sigma / range as now known.
+  float update(float score, double seen, double range_share);
 
  private:
-  double sum_ = 0, weight_ = 0;
+  double best_ = -std::numeric_limits<double>::infinity();
 };
 
 }  // namespace bole

@@ -11,8 +11,10 @@ namespace {
 
 // Seconds a tree may stay unseen and keep its id: the longer, the oftener it was seen.
 constexpr double kForgetAfter = 0.5, kForgetAfterASighting = 0.5, kForgetAtLast = 5.0;
-constexpr double kLookFor = 1.0;       // seconds, where a tree is expected
-constexpr double kFewSightings = 3.0;  // too few to expect it
+constexpr double kLookFor = 1.0;  // seconds, where a tree is expected
+constexpr int kFewSightings = 3;  // too few to expect it
+constexpr double kHardly = 0.1;   // probability of what is not worth expecting
+constexpr double kProbable = 0.5;
 constexpr std::size_t kMostTracks = 256;
 constexpr double kGate = 30.0;        // misfit at which a sighting is no more of a track
 constexpr double kAsideGate = 12.0;   // the part of that across the line of sight
@@ -25,6 +27,7 @@ constexpr double kSameWidth = 0.75;   // in kWidthSpread
 constexpr double kFartherIfSame = 1.6;
 constexpr double kBeyondEdge = 0.15;   // of a tree's width, that a part of it may stand out
 constexpr double kNearer = 0.6;        // metres that a part of a tree may seem nearer
+constexpr double kWider = 1.2;         // that a whole tree is at least, than a part of it
 constexpr double kPartOfRange = 0.05;  // that a range is off by when another foot is found
 constexpr double kScaleSeconds = 5.0;  // after which the ranges seen set the scale
 constexpr double kScaleSigma = 0.05;   // of the scale as it is
@@ -41,14 +44,24 @@ bool follows(double elapsed) {
 // No two trees this far apart are ever taken for one, however badly their range is known.
 double farthest_step(double range) { return std::max(1.0, 0.25 * range); }
 
-// Whether what is seen lies within the outline of the track, and may be as far away.
-bool covers(const Track& track, const Tree& tree) {
+// Whether the narrower of two outlines, `turn` apart, lies within the wider one.
+bool within(double narrower, double wider, double turn) {
+  return turn + narrower / 2 < (0.5 + kBeyondEdge) * wider;
+}
+
+// What a sighting may be of a track's tree: a part of it, or the whole where the track is of a
+// part.
+enum class Share { none, part, whole };
+Share share_of(const Track& track, const Tree& tree) {
   const GroundPoint at = track.position();
   const double turn = std::abs(wrap_angle(tree.bearing - std::atan2(at.y, at.x)));
   const double width = angular_width(track.diameter(), track.range());
   const double behind = tree.range - track.range();
-  return turn + tree.angular_width / 2 < (0.5 + kBeyondEdge) * width && behind > -kNearer &&
-         behind < farthest_step(track.range());
+  if (within(tree.angular_width, width, turn) && behind > -kNearer &&
+      behind < farthest_step(track.range()))
+    return Share::part;
+  const bool holds = tree.angular_width > kWider * width && within(width, tree.angular_width, turn);
+  return holds && std::abs(behind) < kNearer ? Share::whole : Share::none;
 }
 
 // A standard deviation that fades from what is known to what may be, by the share `kept`.
@@ -139,8 +152,8 @@ std::span<const ExpectedTrunk> Tracker::expected(double elapsed) {
   if (!follows(elapsed)) return {};
   const EgoMotion motion = prior(elapsed).mean;
   for (const Track& track : tracks_) {
-    if (track.sightings() > kFewSightings && track.level() > 0 && track.unseen() < kLookFor &&
-        expected_.size() < kMostTrees)
+    if (track.sightings() > kFewSightings && track.probability() > kHardly &&
+        track.unseen() < kLookFor && expected_.size() < kMostTrees)
       expected_.push_back(track.after(motion));
   }
   return expected_;
@@ -170,18 +183,21 @@ MotionEstimate Tracker::estimate(std::span<const Tree> trees, const MotionEstima
 
 // Now a whole trunk stands out and now the half of it that is lit. What lies within the outline of
 // a tree that is known better and not seen otherwise is that tree: one behind it would be hidden.
-// The track that the part had is forgotten.
-int Tracker::whole(const Tree& part, int track) {
+// So is what holds such an outline, as far away. The track that the sighting had is forgotten.
+int Tracker::rejoin(const Tree& tree, int track) {
   int best = track;
   for (std::size_t k = 0; k < paired_.size(); ++k) {
-    const double sightings = best < 0 ? 0 : tracks_[best].sightings();
-    if (paired_[k] == 0 && tracks_[k].sightings() > sightings && covers(tracks_[k], part))
+    const int sightings = best < 0 ? 0 : tracks_[best].sightings();
+    if (paired_[k] == 0 && tracks_[k].sightings() > sightings &&
+        share_of(tracks_[k], tree) != Share::none)
       best = static_cast<int>(k);
   }
   if (best != track) {
     paired_[best] = 1;
     if (track >= 0) tracks_[track].forget();
   }
+  if (best >= 0 && tree.score > kProbable && share_of(tracks_[best], tree) == Share::whole)
+    tracks_[best].widen(tree);
   return best;
 }
 
@@ -235,7 +251,7 @@ void Tracker::update(std::span<Tree> trees, double elapsed) {
   }
   for (std::size_t i = 0; i < trees.size(); ++i) {
     const float score = trees[i].score;
-    const int k = whole(trees[i], pairs[i]);
+    const int k = rejoin(trees[i], pairs[i]);
     if (k >= 0) {
       tracks_[k].see(trees[i]);
     } else if (tracks_.size() < kMostTracks + kMostTrees) {

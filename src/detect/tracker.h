@@ -58,8 +58,8 @@ class Tracker {
                         const MotionEstimate& motion);
   /// Brings tracks and motion to the scale of the ranges seen.
   void rescale(std::span<const Tree> trees, std::span<const int> pairs, double elapsed);
-  /// The track that a sighting, paired with `track` (-1: none), is part of.
-  int whole(const Tree& part, int track);
+  /// The track that a sighting, paired with `track` (-1: none), is part or whole of.
+  int rejoin(const Tree& tree, int track);
 
   Scores scores_;
   std::vector<Track> tracks_;

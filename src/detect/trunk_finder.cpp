@@ -12,6 +12,7 @@ constexpr float kWorthOtherFeet = -5.0F;  // logit: with a wrong foot a trunk lo
 constexpr float kWorthAnswering = -3.5F;  // logit
 constexpr float kFarBetter = 3.0F;        // of two logits: the second look seldom turns them round
 constexpr float kSure = 2.0F;             // logit
+constexpr float kExpectation = 2.0F;      // logit that rivals must be better by
 constexpr float kHopeless = -99;          // logit
 
 // The farther the search goes, the more trunks there are.
@@ -189,20 +190,52 @@ void TrunkFinder::look_at_other_feet(const PanoramaView& panorama) {
   look_again(panorama, others_);
 }
 
+// Once where the edges next to the outline are, and once where it is expected: the edges that stand
+// out most may be those of the half of a trunk that is lit.
 void TrunkFinder::look_where_expected(const PanoramaView& panorama,
                                       std::span<const Candidate> expected) {
   others_.clear();
   for (const Candidate& candidate : expected) {
-    const TrunkShape outline{
-        .foot = candidate.foot, .left = candidate.left, .right = candidate.left + candidate.width};
-    if (!readable(outline) || explained(outline, kSure)) continue;
+    const TrunkShape outline{.foot = candidate.foot,
+                             .left = candidate.left,
+                             .right = candidate.left + candidate.width,
+                             .dark = candidate.dark};
+    const bool found = std::any_of(trunks_.begin(), trunks_.end(), [&](const Trunk& trunk) {
+      return trunk.logit > kSure && has_outline(trunk.shape, candidate);
+    });
+    if (found || !readable(outline) || others_.size() + 2 > others_.capacity()) continue;
     Sight sight;
-    if (fit(candidate, sight.trunk.shape, sight.trunk.fit) && others_.size() < others_.capacity())
-      others_.push_back(sight);
+    if (fit(candidate, sight.trunk.shape, sight.trunk.fit)) others_.push_back(sight);
+    sight.trunk.shape = outline;
+    refine(sight.trunk.shape, sight.trunk.fit);
+    others_.push_back(sight);
   }
   look(panorama, others_);
   keep_best(others_, kWorthASecondLook);
   look_again(panorama, others_);
+  for (Trunk& trunk : trunks_) {
+    trunk.expected = std::any_of(expected.begin(), expected.end(), [&](const Candidate& outline) {
+      return has_outline(trunk.shape, outline);
+    });
+  }
+}
+
+// Whether a trunk takes up these columns, wherever its foot is.
+bool TrunkFinder::has_outline(const TrunkShape& shape, const Candidate& outline) const {
+  constexpr float kAside = 0.25F, kOfWidth = 0.25F;  // of the width, of its logarithm
+  const float middle = shape.centre() + shape.slope() * (outline.foot - shape.foot);
+  const float aside = middle - (outline.left + 0.5F * outline.width);
+  return std::abs(aside - whole_turns(aside)) < kAside * outline.width &&
+         std::abs(std::log(shape.width() / outline.width)) < kOfWidth;
+}
+
+// What of a distance between columns is whole turns; std::round would be a call.
+float TrunkFinder::whole_turns(float columns) const {
+  if (!wraps_) return 0;
+  constexpr float kMany = 16;
+  const float turn = static_cast<float>(columns_);
+  const float turns = columns / turn + (kMany + 0.5F);
+  return turn * (static_cast<float>(static_cast<int>(turns)) - kMany);
 }
 
 // Whether a trunk of a higher logit explains the same pixels.
@@ -217,11 +250,7 @@ bool TrunkFinder::explained(const TrunkShape& shape, float logit) const {
 bool TrunkFinder::same_pixels(const TrunkShape& a, const TrunkShape& b) const {
   const float row = std::min(a.foot, b.foot);
   const auto left = [&](const TrunkShape& s) { return s.left + s.slope() * (row - s.foot); };
-  const float turn = static_cast<float>(columns_);
-  // Whole turns between them; std::round would be a call.
-  constexpr float kMany = 16;
-  const float turns = (a.centre() - b.centre()) / turn + (kMany + 0.5F);
-  const float shift = wraps_ ? turn * (static_cast<float>(static_cast<int>(turns)) - kMany) : 0;
+  const float shift = whole_turns(a.centre() - b.centre());
   const float a0 = left(a), a1 = a0 + a.width(), b0 = left(b) + shift, b1 = b0 + b.width();
   const float narrower = std::min(a.width(), b.width());
   if (std::min(a1, b1) - std::max(a0, b0) > 0.5F * narrower) return true;
@@ -229,9 +258,12 @@ bool TrunkFinder::same_pixels(const TrunkShape& a, const TrunkShape& b) const {
   return a.dark != b.dark && (std::abs(a0 - b1) < near || std::abs(a1 - b0) < near);
 }
 
-// Of two that are as likely the wider one stays: a lit half looks like a trunk, too.
+// Of two that are as likely the wider one stays: a lit half looks like a trunk, too. What is known
+// of a trunk from earlier frames goes before that.
 void TrunkFinder::suppress() {
-  const auto rank = [](const Trunk& t) { return t.logit + std::log(t.shape.width()); };
+  const auto rank = [](const Trunk& t) {
+    return t.logit + std::log(t.shape.width()) + (t.expected ? kExpectation : 0);
+  };
   std::sort(trunks_.begin(), trunks_.end(), [&](const Trunk& a, const Trunk& b) {
     const float first = rank(a), second = rank(b);
     return first != second ? first > second : a.shape.left < b.shape.left;

@@ -18,6 +18,7 @@ struct Trunk {
   float centre_sigma = 0;  ///< columns
   float width_sigma = 0;   ///< of the logarithm
   float foot_sigma = 0;    ///< rows
+  bool expected = false;   ///< earlier frames lead to expect a trunk of this outline
   bool cut = false;        ///< it goes on below what the camera sees: its foot is out of sight
 };
 
@@ -29,8 +30,8 @@ class TrunkFinder {
   explicit TrunkFinder(const DetectorSetup& setup);
 
   /// Trunks that are not out of the question, the better ones first, as to probability and width;
-  /// valid until the next call. `expected`: outlines to try where no trunk is found for sure,
-  /// whatever the templates say.
+  /// valid until the next call. `expected`: outlines to try where no trunk like them is found for
+  /// sure, whatever the templates say; they go before others of the same pixels.
   std::span<Trunk> find(const PanoramaView& panorama, std::span<const Candidate> expected = {});
 
   /// The steps of find, for the training of the network.
@@ -68,6 +69,8 @@ class TrunkFinder {
   void look_at_other_feet(const PanoramaView& panorama);
   void look_where_expected(const PanoramaView& panorama, std::span<const Candidate> expected);
   bool explained(const TrunkShape& shape, float logit) const;
+  bool has_outline(const TrunkShape& shape, const Candidate& outline) const;
+  float whole_turns(float columns) const;
   void suppress();
   bool same_pixels(const TrunkShape& a, const TrunkShape& b) const;
 

@@ -82,6 +82,24 @@ TEST(BoleDetector, IsSurerOfTrunksThatItIsToldToExpect) {
   EXPECT_GT(told, alone + 0.1F);
 }
 
+TEST(BoleDetector, TakesTheWholeOfAHalfLitTrunkThatItIsToldToExpect) {
+  PaintedPanorama panorama(usual());
+  const PaintedPanorama::Bar whole{0.5, 4.0, 0.4, 85};
+  const double width = angular_width(whole.diameter, whole.range);
+  panorama.plant(whole);
+  panorama.plant({whole.bearing + width / 4, whole.range, whole.diameter / 2, 40});
+  const auto detector = make_bole_detector(panorama.setup());
+  const auto error_of_width = [&](std::span<const Tree> trees) {
+    for (const Tree& tree : trees)
+      if (std::abs(wrap_angle(tree.bearing - whole.bearing)) < width / 2)
+        return std::abs(tree.angular_width - width);
+    return width;
+  };
+  const ExpectedTrunk there = expected(whole);
+  EXPECT_GT(error_of_width(detector->detect(panorama.view())), 0.3 * width) << "the half, alone";
+  EXPECT_LT(error_of_width(detector->detect(panorama.view(), {&there, 1})), 0.2 * width);
+}
+
 TEST(BoleDetector, FindsNothingWhereATrunkIsExpectedAndNoneStands) {
   PaintedPanorama panorama(usual());
   const auto detector = make_bole_detector(panorama.setup());

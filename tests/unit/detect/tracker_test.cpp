@@ -225,7 +225,8 @@ TEST(Tracker, ScoresATreeByItsHistory) {
   EXPECT_LT(known.back(), known[6]);
   const std::vector<float> doubtful =
       tracked_scores({0.1F, 0.1F, 0.1F, 0.1F, 0.1F, 0.1F, 0.1F, 0.6F});
-  EXPECT_LT(doubtful.back(), 0.5F) << "a rock that once looks like a tree";
+  EXPECT_LT(doubtful[6], 0.2F);
+  EXPECT_LT(doubtful.back(), known[6]) << "a rock that once looks like a tree";
 }
 
 TEST(Tracker, ListsANewClearTreeAtOnce) { EXPECT_GT(tracked_scores({0.9F})[0], 0.8F); }
@@ -234,6 +235,41 @@ TEST(Tracker, NeverGrowsSureOfWhatIsAlwaysDoubtful) {
   // Frames of one thing are alike: forty times 0.6 is not forty witnesses.
   const std::vector<float> scores = tracked_scores(std::vector<float>(40, 0.6F));
   EXPECT_LT(scores.back(), 0.85F);
+}
+
+TEST(Tracker, IsLessSureOfWhatIsSeenNowAndThen) {
+  const auto score_when_seen_every = [](int frames) {
+    Tracker tracker;
+    float score = 0;
+    for (int frame = 0; frame <= 24; ++frame) {
+      std::vector<Tree> trees;
+      if (frame % frames == 0) trees = {seen({4, 1, 0.3}, {})};
+      tracker.update(trees, frame == 0 ? 0 : 0.1);
+      if (!trees.empty()) score = trees[0].score;
+    }
+    return score;
+  };
+  EXPECT_LT(score_when_seen_every(4), score_when_seen_every(1) - 0.1F);
+}
+
+TEST(Tracker, IsSurerOfWhatStandsStillAlongTheRobotsWay) {
+  const auto score_after = [](double speed) {
+    Tracker tracker;
+    float score = 0;
+    for (int frame = 0; frame < 30; ++frame) {
+      std::vector<Tree> trees;
+      for (const WorldTree& tree :
+           {WorldTree{4, 3, 0.3}, {5, -4, 0.3}, {7, 2, 0.3}, {3, -3, 0.3}}) {
+        trees.push_back(seen(tree, {0.1 * frame * speed, 0, 0}));
+        trees.back().range_sigma = 0.2F * trees.back().range;
+        trees.back().score = 0.5F;
+      }
+      tracker.update(trees, frame == 0 ? 0 : 0.1);
+      score = trees[0].score;
+    }
+    return score;
+  };
+  EXPECT_GT(score_after(1), score_after(0) + 0.1F);
 }
 
 TEST(Tracker, LeavesScoresThatAreNoProbabilitiesAsTheyAre) {
@@ -257,6 +293,32 @@ TEST(Tracker, TakesTheLitHalfOfATrunkForTheTree) {
     EXPECT_NEAR(one[0].diameter, whole.diameter, 0.1);
   }
   EXPECT_EQ(ids.size(), 1U);
+}
+
+// The ids of a tree that shows its half first, and then the whole `farther` away.
+std::set<int> ids_of_half_then_whole(double farther, double* diameter = nullptr) {
+  Tracker tracker;
+  const Tree whole = seen({4 + farther, 0, 0.5}, {});
+  Tree half = seen({4, 0, 0.2}, {});
+  half.bearing += whole.angular_width / 4;
+  std::set<int> ids;
+  for (int frame = 0; frame < 12; ++frame) {
+    std::vector<Tree> one{frame < 10 ? half : whole};
+    tracker.update(one, frame == 0 ? 0 : 0.1);
+    ids.insert(one[0].id);
+    if (diameter != nullptr) *diameter = one[0].diameter;
+  }
+  return ids;
+}
+
+TEST(Tracker, KeepsTheIdOfATreeWhoseLitHalfWasSeenFirstAndWidensIt) {
+  double diameter = 0;
+  EXPECT_EQ(ids_of_half_then_whole(0.2, &diameter).size(), 1U);
+  EXPECT_NEAR(diameter, 0.5, 0.08);
+}
+
+TEST(Tracker, TakesNoTreeForTheWholeOfOneThatStandsNearer) {
+  EXPECT_EQ(ids_of_half_then_whole(1.2).size(), 2U);
 }
 
 TEST(Tracker, KeepsTheIdOfATreeWhoseRangeJumps) {
@@ -334,7 +396,7 @@ TEST(Tracker, ExpectsATreeWhereTheMotionBringsIt) {
 
 TEST(Tracker, ExpectsNoTreeThatIsNewDoubtfulOrLongUnseen) {
   EXPECT_TRUE(tracker_of_a_drive(0.9F, 2).expected(0.1).empty());
-  EXPECT_TRUE(tracker_of_a_drive(0.3F, 30).expected(0.1).empty());
+  EXPECT_TRUE(tracker_of_a_drive(0.05F, 30).expected(0.1).empty());
   Tracker tracker = tracker_of_a_drive(0.9F, 30);
   std::vector<Tree> none;
   for (int frame = 0; frame < 5; ++frame) tracker.update(none, 0.1);
