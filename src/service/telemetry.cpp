@@ -51,7 +51,7 @@ void Telemetry::capture_event(const CameraEvent& event) {
   if (!event.repeated) {
     const auto level = streaming || event.state == CameraState::opening ? spdlog::level::info
                                                                         : spdlog::level::warn;
-    spdlog::log(level, "camera {}: {}", name(event.state), event.reason);
+    spdlog::log(level, "state {}: {}", name(event.state), event.reason);
   }
   const std::lock_guard lock(mutex_);
   event_ = event;

@@ -40,5 +40,5 @@ def live_lists(mode, size, picture_count, listener):
     with Camera([mode], rates=(5,)) as camera:
         camera.plug()
         with Boled(f"v4l2:{camera.link}", size, *settings) as boled:
-            boled.wait_for_log("camera streaming", 60)
+            boled.wait_for_log("state streaming", 60)
             return wait_until(lists_of_all, 30, f"{mode}: a list of each picture")
