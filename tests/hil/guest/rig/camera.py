@@ -24,8 +24,11 @@ class Camera(Process):
         )
 
     def end(self, timeout_s=30):
+        """Returns when its stable name is gone: the next camera may have the same."""
         self.child.stdin.close()  # the end of its commands is the camera's end
-        return self.wait(timeout_s)
+        status = self.wait(timeout_s)
+        self.wait_until_gone()
+        return status
 
     def command(self, text):
         """Sends a command (see hil_camera's main.cpp) and waits until it has taken effect."""
@@ -41,6 +44,9 @@ class Camera(Process):
     def unplug(self):
         """Pulls the camera out; returns when its stable name is gone."""
         self.command("unplug")
+        self.wait_until_gone()
+
+    def wait_until_gone(self):
         wait_until(lambda: not os.path.lexists(self.link), 20, f"{self.link} disappears")
 
     @property
