@@ -205,8 +205,7 @@ void VisionHealth::measure_brightness() {
   s.mean = static_cast<float>(sum / total);
   s.median = static_cast<float>(quantile(all, 0.5));
   s.high = static_cast<float>(quantile(all, 0.95));
-  s.saturated =
-      static_cast<float>(std::accumulate(all.begin() + kSaturated, all.end(), 0.0) / total);
+  s.saturated = static_cast<float>(saturated() / total);
   s.saturated_ground = share(saturated_ground_, ground_pixels_);
 }
 

@@ -71,7 +71,7 @@ class VisionHealth {
 
   PanoramaGeometry geometry_;
   std::array<Sector, kSectors> sectors_;
-  std::vector<Run> above_, ground_;       // the horizon; below it
+  std::vector<Run> above_, ground_;       // the horizon, and below it
   std::uint32_t ground_pixels_ = 0;       // of the runs below it
   std::vector<std::int16_t> even_, odd_;  // of one row and sector: see sharpness
   std::array<std::array<std::uint32_t, 256>, kSectors> histograms_{};
