@@ -11,31 +11,10 @@
 
 #include "geometry/angles.h"
 #include "geometry/ground.h"
+#include "unit/detect/world_tree.h"
 
 namespace bole {
 namespace {
-
-struct WorldTree {
-  double x, y, diameter;
-};
-
-struct Pose {
-  double x = 0, y = 0, heading = 0;
-};
-
-Tree seen(const WorldTree& tree, const Pose& pose) {
-  const GroundPoint at = moved({tree.x, tree.y}, {pose.x, pose.y, pose.heading});
-  Tree result;
-  result.bearing = static_cast<float>(std::atan2(at.y, at.x));
-  result.range = static_cast<float>(std::hypot(at.x, at.y));
-  result.diameter = static_cast<float>(tree.diameter);
-  result.score = 0.9F;
-  result.bearing_sigma = 0.004F;
-  result.range_sigma = 0.02F * result.range;
-  result.diameter_sigma = 0.03F;
-  result.angular_width = static_cast<float>(angular_width(tree.diameter, result.range));
-  return result;
-}
 
 // A wood of trees at least 1.2 m apart, and a robot that winds through it at 1 m/s, 10 Hz.
 class Wood {
@@ -202,79 +181,6 @@ TEST(Tracker, PublishesEachTreeAtOnceAndNoneThatIsNotSeen) {
   EXPECT_TRUE(none.empty());
   tracker.update(one, 0.1);
   EXPECT_EQ(one[0].id, 0) << "a tree hidden for a frame keeps its id";
-}
-
-// One tree, ahead of a robot that stands, seen with these scores in frames 0.1 s apart.
-std::vector<float> tracked_scores(const std::vector<float>& scores,
-                                  Tracker::Scores meaning = Tracker::Scores::probabilities) {
-  Tracker tracker(meaning);
-  std::vector<float> result;
-  for (const float score : scores) {
-    std::vector<Tree> one{seen({4, 1, 0.4}, {})};
-    one[0].score = score;
-    tracker.update(one, result.empty() ? 0 : 0.1);
-    result.push_back(one[0].score);
-  }
-  return result;
-}
-
-TEST(Tracker, ScoresATreeByItsHistory) {
-  const std::vector<float> known = tracked_scores({0.8F, 0.8F, 0.8F, 0.8F, 0.8F, 0.8F, 0.8F, 0.3F});
-  EXPECT_GT(known[6], 0.8F);
-  EXPECT_GT(known.back(), 0.5F) << "seen badly once";
-  EXPECT_LT(known.back(), known[6]);
-  const std::vector<float> doubtful =
-      tracked_scores({0.1F, 0.1F, 0.1F, 0.1F, 0.1F, 0.1F, 0.1F, 0.6F});
-  EXPECT_LT(doubtful[6], 0.2F);
-  EXPECT_LT(doubtful.back(), known[6]) << "a rock that once looks like a tree";
-}
-
-TEST(Tracker, ListsANewClearTreeAtOnce) { EXPECT_GT(tracked_scores({0.9F})[0], 0.8F); }
-
-TEST(Tracker, NeverGrowsSureOfWhatIsAlwaysDoubtful) {
-  // Frames of one thing are alike: forty times 0.6 is not forty witnesses.
-  const std::vector<float> scores = tracked_scores(std::vector<float>(40, 0.6F));
-  EXPECT_LT(scores.back(), 0.85F);
-}
-
-TEST(Tracker, IsLessSureOfWhatIsSeenNowAndThen) {
-  const auto score_when_seen_every = [](int frames) {
-    Tracker tracker;
-    float score = 0;
-    for (int frame = 0; frame <= 24; ++frame) {
-      std::vector<Tree> trees;
-      if (frame % frames == 0) trees = {seen({4, 1, 0.3}, {})};
-      tracker.update(trees, frame == 0 ? 0 : 0.1);
-      if (!trees.empty()) score = trees[0].score;
-    }
-    return score;
-  };
-  EXPECT_LT(score_when_seen_every(4), score_when_seen_every(1) - 0.1F);
-}
-
-TEST(Tracker, IsSurerOfWhatStandsStillAlongTheRobotsWay) {
-  const auto score_after = [](double speed) {
-    Tracker tracker;
-    float score = 0;
-    for (int frame = 0; frame < 30; ++frame) {
-      std::vector<Tree> trees;
-      for (const WorldTree& tree :
-           {WorldTree{4, 3, 0.3}, {5, -4, 0.3}, {7, 2, 0.3}, {3, -3, 0.3}}) {
-        trees.push_back(seen(tree, {0.1 * frame * speed, 0, 0}));
-        trees.back().range_sigma = 0.2F * trees.back().range;
-        trees.back().score = 0.5F;
-      }
-      tracker.update(trees, frame == 0 ? 0 : 0.1);
-      score = trees[0].score;
-    }
-    return score;
-  };
-  EXPECT_GT(score_after(1), score_after(0) + 0.1F);
-}
-
-TEST(Tracker, LeavesScoresThatAreNoProbabilitiesAsTheyAre) {
-  EXPECT_EQ(tracked_scores({0.9F, 0.2F, 0.7F}, Tracker::Scores::ranks),
-            (std::vector<float>{0.9F, 0.2F, 0.7F}));
 }
 
 TEST(Tracker, TakesTheLitHalfOfATrunkForTheTree) {
