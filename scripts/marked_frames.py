@@ -2,6 +2,7 @@
 scripts/calibration, scripts/degraded, scripts/held_out, scripts/photographs, scripts/robustness and
 scripts/tracking."""
 import json
+import math
 import os
 import pathlib
 import subprocess
@@ -34,6 +35,19 @@ def evaluate(camera, folder, images=None):
     """The product mode's figures; `images`: folder of the frames where it is not the truth's."""
     return json.loads(run(BOLECTL, "eval", "--json", "--camera", camera, "--truth",
                           folder / "truth.json", images or folder))["bole"]
+
+
+def apart(tree, other):
+    """Metres between them on the ground."""
+    return math.dist(*([t["range"] * math.cos(t["bearing"]), t["range"] * math.sin(t["bearing"])]
+                       for t in (tree, other)))
+
+
+def matches(found, tree):
+    """Whether a detection may be of that tree, by the gate of tools/score.py."""
+    turn = abs(math.remainder(found["bearing"] - tree["bearing"], 2 * math.pi))
+    half = math.asin(min(0.99, tree["diameter"] / 2 / tree["range"]))
+    return turn <= max(math.radians(1.5), half) and apart(found, tree) <= max(1, tree["range"] / 4)
 
 
 def held_out(folder, seed, preset, frames):
