@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "detect/dense_layer.h"
+#include "detect/network_weights.h"
 
 namespace bole {
 namespace {
@@ -22,51 +23,11 @@ static_assert(weights::kInputs == F::kCount, "train the networks anew");
 static_assert(glance_weights::kInputs == F::kGrid + kGlanced, "train the networks anew");
 static_assert(weights::kLimit <= kMostInput && glance_weights::kLimit <= kMostInput);
 
-// A first layer's weights in whole units, two inputs side by side.
-template <std::size_t kInputs, std::size_t kUnits>
-constexpr auto whole_units(const float (&weights)[kInputs][kUnits]) {
-  std::array<std::int16_t, (kInputs + 1) / 2 * 2 * kUnits> units{};
-  for (std::size_t j = 0; j < kUnits; ++j) {
-    float all = 0;
-    for (std::size_t i = 0; i < kInputs; ++i) {
-      const float weight = weights[i][j], size = weight < 0 ? -weight : weight;
-      all += size;
-      if (size > kMostWeight || all > kMostWeightsOfUnit) throw "too large for whole numbers";
-      units[(i / 2 * kUnits + j) * 2 + i % 2] =
-          static_cast<std::int16_t>(weight * kWeightUnits + (weight < 0 ? -0.5F : 0.5F));
-    }
-  }
-  return units;
-}
 alignas(64) constexpr auto kToFirst = whole_units(weights::kToFirst);
 alignas(64) constexpr auto kGlanceToFirst = whole_units(glance_weights::kToFirst);
 
-// A last layer's weights with columns of zeros, for whole vectors.
-constexpr int kWidth = 8;
-template <std::size_t kUnits, std::size_t kOutputs>
-constexpr auto padded(const float (&weights)[kUnits][kOutputs]) {
-  static_assert(kOutputs <= kWidth);
-  std::array<std::array<float, kWidth>, kUnits> wide{};
-  for (std::size_t j = 0; j < kUnits; ++j)
-    for (std::size_t k = 0; k < kOutputs; ++k) wide[j][k] = weights[j][k];
-  return wide;
-}
 alignas(64) constexpr auto kToOutput = padded(weights::kToOutput);
 alignas(64) constexpr auto kGlanceToOutput = padded(glance_weights::kToOutput);
-
-template <std::size_t kUnits>
-Judgement judgement_of(const std::array<float, kUnits>& last,
-                       const std::array<std::array<float, kWidth>, kUnits>& to_output,
-                       std::span<const float> bias) {
-  std::array<float, kWidth> out{};
-  std::copy(bias.begin(), bias.end(), out.begin());
-  add_products(last.data(), kUnits, to_output[0].data(), kWidth, out.data());
-  return {.logit = out[0],
-          .centre_shift = out[1],
-          .log_width = out[2],
-          .foot_shift = out[3],
-          .log_sigma = {out[4], out[5], out[6]}};
-}
 
 // Of some looks at a time, the units of a first layer; `standardise_look(values, inputs)` makes its
 // inputs and `judge_look(units)` a judgement of them.
@@ -101,11 +62,8 @@ void judge(std::span<const F::Values> features, std::span<Judgement> judgements)
   judge_all<weights::kInputs>(features, judgements, kToFirst.data(), weights::kFirstBias,
                               standardise_look,
                               [](const std::array<float, weights::kFirst>& first) {
-                                std::array<float, weights::kSecond> second = weights::kSecondBias;
-                                add_products(first.data(), weights::kFirst, weights::kToSecond[0],
-                                             weights::kSecond, second.data());
-                                for (float& value : second) value = std::max(value, value * kLeak);
-                                return judgement_of(second, kToOutput, weights::kOutputBias);
+                                return judgement_of(first, weights::kToSecond, weights::kSecondBias,
+                                                    kToOutput, weights::kOutputBias);
                               });
 }
 

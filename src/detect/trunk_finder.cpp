@@ -3,37 +3,52 @@
 #include <algorithm>
 #include <cmath>
 
+#include "detect/close_look.h"
 #include "detect/dense_layer.h"
+#include "geometry/ground.h"
 
 namespace bole {
 namespace {
 
-constexpr float kWorthOtherFeet = -5.0F;  // logit: with a wrong foot a trunk looks like none
 constexpr float kWorthAnswering = -3.5F;  // logit
 constexpr float kFarBetter = 3.0F;        // of two logits: the second look seldom turns them round
 constexpr float kSure = 2.0F;             // logit
 constexpr float kExpectation = 2.0F;      // logit that rivals must be better by
 constexpr float kHopeless = -99;          // logit
-
-// The farther the search goes, the more trunks there are.
-int most_candidates(const Search& search) {
-  return static_cast<int>(std::clamp(210 + 28 * (search.range.high - 8), 210.0, 1100.0));
-}
+constexpr double kNarrower = 0.8;         // than any that is searched for, it may still be one
+constexpr double kFarther = 1.6;          // likewise, of where it stands on level ground
 
 }  // namespace
+
+Effort Effort::for_reach(double range) {
+  constexpr double kShort = 8, kLong = 40;  // metres
+  const double far = std::clamp((range - kShort) / (kLong - kShort), 0.0, 1.0);
+  const auto between = [far](double low, double high) { return low + far * (high - low); };
+  return {.candidates = static_cast<int>(between(210, 1100)),
+          .close_looks = static_cast<int>(between(5, 150)),
+          .worth_other_feet = static_cast<float>(between(-5, -6)),
+          .worth_a_second_look = static_cast<float>(between(-3, -5)),
+          .doubt = static_cast<float>(between(2, 3.5))};
+}
 
 TrunkFinder::TrunkFinder(const DetectorSetup& setup)
     : columns_(setup.panorama.columns),
       wraps_(setup.panorama.wraps()),
       focal_(setup.panorama.focal()),
+      narrowest_(static_cast<float>(
+          kNarrower * focal_ * angular_width(setup.search.diameter.low, setup.search.range.high))),
+      highest_foot_(
+          static_cast<float>(setup.panorama.horizon_row() + 0.5 +
+                             focal_ * setup.height / (kFarther * setup.search.range.high))),
+      effort_(Effort::for_reach(setup.search.range.high)),
       bands_(setup, Templates::margin(setup)),
-      templates_(setup, bands_, most_candidates(setup.search)),
+      templates_(setup, bands_, effort_.candidates),
       fitter_(setup),
       reader_(setup) {
-  sights_.reserve(most_candidates(setup.search));
+  sights_.reserve(effort_.candidates);
   others_.reserve(EdgeFitter::kOtherFeet * sights_.capacity());
-  trunks_.reserve(3 * most_candidates(setup.search));
-  kept_.reserve(3 * most_candidates(setup.search));
+  trunks_.reserve(std::size_t{3} * effort_.candidates);
+  kept_.reserve(trunks_.capacity());
 }
 
 std::span<const Candidate> TrunkFinder::candidates(const PanoramaView& panorama) {
@@ -68,6 +83,10 @@ bool TrunkFinder::glance(const TrunkShape& shape, const EdgeFit& fit,
   return true;
 }
 
+TrunkPatches TrunkFinder::patches(const TrunkShape& shape) const {
+  return read_patches(bands_, shape, fitter_.first_band(shape.left, shape.right), focal_);
+}
+
 // Most candidates about a trunk are that trunk seen amiss: those that look best go first, and what
 // one of them explains far better is not looked at again.
 std::span<Trunk> TrunkFinder::find(const PanoramaView& panorama,
@@ -78,12 +97,12 @@ std::span<Trunk> TrunkFinder::find(const PanoramaView& panorama,
     if (fit(candidate, sight.trunk.shape, sight.trunk.fit)) sights_.push_back(sight);
   }
   glance(sights_);
-  keep_best(sights_, kWorthOtherFeet);
+  keep_best(sights_, effort_.worth_other_feet);
   trunks_.clear();
   look_again(panorama, sights_);
   look_at_other_feet(panorama);
   look_where_expected(panorama, expected);
-  suppress();
+  suppress(panorama);
   return kept_;
 }
 
@@ -146,7 +165,7 @@ void TrunkFinder::look_again(const PanoramaView& panorama, std::span<const Sight
     count = 0;
   };
   for (const Sight& sight : sights) {
-    if (sight.judgement.logit < kWorthASecondLook) break;
+    if (sight.judgement.logit < effort_.worth_a_second_look) break;
     if (explained(sight.trunk.shape, sight.judgement.logit + kFarBetter)) continue;
     Trunk& trunk = (looks[count] = sight).trunk;
     trunk.shape = corrected(trunk.shape, sight.judgement, focal_);
@@ -159,9 +178,13 @@ void TrunkFinder::look_again(const PanoramaView& panorama, std::span<const Sight
 
 // Keeps what a second look does not rule out.
 void TrunkFinder::take(const Sight& sight) {
-  const Judgement& judgement = sight.judgement;
-  if (judgement.logit < kWorthAnswering || trunks_.size() == trunks_.capacity()) return;
-  Trunk trunk = sight.trunk;
+  if (sight.judgement.logit < kWorthAnswering || trunks_.size() == trunks_.capacity()) return;
+  trunks_.push_back(sight.trunk);
+  settle(trunks_.back(), sight.judgement);
+}
+
+// Makes a trunk what a judgement says of it.
+void TrunkFinder::settle(Trunk& trunk, const Judgement& judgement) const {
   const float width = trunk.shape.width(), unit = foot_unit(trunk.shape, focal_);
   trunk.shape = corrected(trunk.shape, judgement, focal_);
   trunk.logit = judgement.logit;
@@ -169,7 +192,16 @@ void TrunkFinder::take(const Sight& sight) {
   trunk.width_sigma = std::exp(judgement.log_sigma[1]);
   trunk.foot_sigma = unit * std::exp(judgement.log_sigma[2]);
   trunk.cut = trunk.shape.foot + trunk.foot_sigma + Bands::kRows > last_row(trunk.shape.centre());
-  trunks_.push_back(trunk);
+}
+
+// Two networks that were taught apart err apart: the mean of what they say is better than either.
+void TrunkFinder::look_closely(const PanoramaView& panorama, Trunk& trunk) const {
+  trunk.seen_closely = true;
+  TrunkFeatures::Values features;
+  if (!read(panorama, trunk.shape, trunk.fit, features)) return;
+  Judgement judgement = judge_closely(features, patches(trunk.shape));
+  judgement.logit = 0.5F * (judgement.logit + trunk.logit);
+  settle(trunk, judgement);
 }
 
 // What no sure trunk explains may be one that ends elsewhere: with a wrong foot a good candidate
@@ -186,7 +218,7 @@ void TrunkFinder::look_at_other_feet(const PanoramaView& panorama) {
     }
   }
   glance(others_);
-  keep_best(others_, kWorthASecondLook);
+  keep_best(others_, effort_.worth_a_second_look);
   look_again(panorama, others_);
 }
 
@@ -211,7 +243,7 @@ void TrunkFinder::look_where_expected(const PanoramaView& panorama,
     others_.push_back(sight);
   }
   look(panorama, others_);
-  keep_best(others_, kWorthASecondLook);
+  keep_best(others_, effort_.worth_a_second_look);
   look_again(panorama, others_);
   for (Trunk& trunk : trunks_) {
     trunk.expected = std::any_of(expected.begin(), expected.end(), [&](const Candidate& outline) {
@@ -259,22 +291,40 @@ bool TrunkFinder::same_pixels(const TrunkShape& a, const TrunkShape& b) const {
 }
 
 // Of two that are as likely the wider one stays: a lit half looks like a trunk, too. What is known
-// of a trunk from earlier frames goes before that.
-void TrunkFinder::suppress() {
+// of a trunk from earlier frames goes before that. What is in doubt when its turn comes is looked
+// at closely, and waits for its turn once more.
+void TrunkFinder::suppress(const PanoramaView& panorama) {
   const auto rank = [](const Trunk& t) {
     return t.logit + std::log(t.shape.width()) + (t.expected ? kExpectation : 0);
   };
-  std::sort(trunks_.begin(), trunks_.end(), [&](const Trunk& a, const Trunk& b) {
+  const auto comes_later = [&](const Trunk& a, const Trunk& b) {
     const float first = rank(a), second = rank(b);
-    return first != second ? first > second : a.shape.left < b.shape.left;
-  });
+    return first != second ? first < second : a.shape.left > b.shape.left;
+  };
   kept_.clear();
-  for (const Trunk& trunk : trunks_) {
+  int close_looks = effort_.close_looks;
+  std::make_heap(trunks_.begin(), trunks_.end(), comes_later);
+  for (auto end = trunks_.end(); end != trunks_.begin();) {
+    std::pop_heap(trunks_.begin(), end, comes_later);
+    Trunk& trunk = *(end - 1);
     const bool explained = std::any_of(kept_.begin(), kept_.end(), [&](const Trunk& k) {
       return same_pixels(k.shape, trunk.shape);
     });
+    if (!explained && close_looks > 0 && in_doubt(trunk)) {
+      --close_looks;
+      look_closely(panorama, trunk);
+      std::push_heap(trunks_.begin(), end, comes_later);
+      continue;
+    }
     if (!explained) kept_.push_back(trunk);
+    --end;
   }
+}
+
+// Whether a close look may change what is told of a trunk that may be one of the searched.
+bool TrunkFinder::in_doubt(const Trunk& trunk) const {
+  return !trunk.seen_closely && std::abs(trunk.logit) < effort_.doubt &&
+         trunk.shape.width() > narrowest_ && trunk.shape.foot > highest_foot_;
 }
 
 }  // namespace bole

@@ -6,6 +6,7 @@
 #include "detect/network.h"
 #include "detect/templates.h"
 #include "detect/trunk_features.h"
+#include "detect/trunk_patches.h"
 #include "detect/trunk_shape.h"
 
 namespace bole {
@@ -14,19 +15,30 @@ namespace bole {
 struct Trunk {
   TrunkShape shape;
   EdgeFit fit;
-  float logit = 0;         ///< of the probability that this is a trunk
-  float centre_sigma = 0;  ///< columns
-  float width_sigma = 0;   ///< of the logarithm
-  float foot_sigma = 0;    ///< rows
-  bool expected = false;   ///< earlier frames lead to expect a trunk of this outline
-  bool cut = false;        ///< it goes on below what the camera sees: its foot is out of sight
+  float logit = 0;            ///< of the probability that this is a trunk
+  float centre_sigma = 0;     ///< columns
+  float width_sigma = 0;      ///< of the logarithm
+  float foot_sigma = 0;       ///< rows
+  bool expected = false;      ///< earlier frames lead to expect a trunk of this outline
+  bool cut = false;           ///< it goes on below what the camera sees: its foot is out of sight
+  bool seen_closely = false;  ///< by the network that is shown pixels
+};
+
+/// How much is looked at in a frame.
+struct Effort {
+  int candidates = 0;
+  int close_looks = 0;         ///< at most
+  float worth_other_feet = 0;  ///< logit of a first look: with a wrong foot a trunk looks like none
+  float worth_a_second_look = 0;  ///< logit of a first look
+  float doubt = 0;                ///< logits up to this, of either sign, are worth a close look
+
+  /// The farther the search goes, the more trunks there are, and the harder they are to tell.
+  static Effort for_reach(double range);
 };
 
 /// Candidates, their refinement and judgement.
 class TrunkFinder {
  public:
-  static constexpr float kWorthASecondLook = -3;  ///< logit of a first look
-
   explicit TrunkFinder(const DetectorSetup& setup);
 
   /// Trunks that are not out of the question, the better ones first, as to probability and width;
@@ -42,6 +54,7 @@ class TrunkFinder {
   int other_feet(const TrunkShape& shape, std::array<float, EdgeFitter::kOtherFeet>& feet) const {
     return fitter_.other_feet(bands_, shape, feet);
   }
+  const Effort& effort() const { return effort_; }
   float last_row(float column) const { return fitter_.last_row(column); }
   void refine(TrunkShape& shape, EdgeFit& fit) const { fitter_.refine(bands_, shape, fit); }
   /// False, and nothing read, when the outline leads farther out of the panorama than Bands
@@ -51,6 +64,8 @@ class TrunkFinder {
   /// The same of what judge_at_a_glance is shown.
   [[nodiscard]] bool glance(const TrunkShape& shape, const EdgeFit& fit,
                             TrunkFeatures::Values& out) const;
+  /// Of an outline that can be read.
+  TrunkPatches patches(const TrunkShape& shape) const;
 
  private:
   bool readable(const TrunkShape& shape) const;
@@ -66,17 +81,22 @@ class TrunkFinder {
   static void keep_best(std::vector<Sight>& sights, float least);
   void look_again(const PanoramaView& panorama, std::span<const Sight> sights);
   void take(const Sight& sight);
+  void settle(Trunk& trunk, const Judgement& judgement) const;
   void look_at_other_feet(const PanoramaView& panorama);
   void look_where_expected(const PanoramaView& panorama, std::span<const Candidate> expected);
   bool explained(const TrunkShape& shape, float logit) const;
   bool has_outline(const TrunkShape& shape, const Candidate& outline) const;
   float whole_turns(float columns) const;
-  void suppress();
+  void suppress(const PanoramaView& panorama);
+  bool in_doubt(const Trunk& trunk) const;
+  void look_closely(const PanoramaView& panorama, Trunk& trunk) const;
   bool same_pixels(const TrunkShape& a, const TrunkShape& b) const;
 
   int columns_;
   bool wraps_;
   double focal_;
+  float narrowest_, highest_foot_;  // of trunks that are searched for: columns, row
+  Effort effort_;
   Bands bands_;
   Templates templates_;
   EdgeFitter fitter_;

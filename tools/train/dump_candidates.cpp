@@ -1,16 +1,19 @@
-// dump_candidates OUT SECOND_LOOKS FRAME...: what the network is to learn from, by the detector's
-// own code. For every frame the candidates, some of them shaken, and shapes about the true trunks;
-// where SECOND_LOOKS is 1 and not 0, also what the network, as it was built in, takes for a trunk:
-// what it is mistaken in, it learns most from. Of each kHead + TrunkFeatures::kCount floats: frame
-// number, label (1 trunk, 0 none), shifts to the truth (see Judgement), weight, then the features.
+// dump_candidates OUT LOOKS FRAME...: what the networks are to learn from, by the detector's own
+// code. For every frame the candidates, some of them shaken, and shapes about the true trunks;
+// where LOOKS is `second` and not `first`, also what the network, as it was built in, takes for a
+// trunk: what it is mistaken in, it learns most from. Of each kHead + TrunkFeatures::kCount floats:
+// frame number, label (1 trunk, 0 none), shifts to the truth (see Judgement), weight, then the
+// features. Where LOOKS is `close` they are those that the network, as it was built in, leaves in
+// doubt, and a few others, and each is followed by the bytes of its TrunkPatches.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "detect/trunk_finder.h"
@@ -24,7 +27,11 @@ constexpr int kHead = 6;
 constexpr double kMostNegatives = 200;  // a frame; the others are drawn from, and weigh more
 constexpr double kNear = 1.35;          // of what a trunk's shape may be off: neither
 constexpr float kSecondLooks = 0.4F;    // share of them that is kept
+constexpr float kLeastDoubt = -5.5F, kMostDoubt = 4.5F;  // logit
+constexpr float kDoubtful = 0.2F, kClear = 0.02F;        // shares of them that are kept
 constexpr double kReferenceFocal = 1440 / 6.283185307;
+
+enum class Looks { first, second, close };
 
 struct Label {
   float trunk = 0;  // 1, 0, or -1: neither, left out
@@ -59,10 +66,10 @@ TrainingFrame in_another_light(TrainingFrame frame, int number) {
 
 class Dump {
  public:
-  Dump(const TrainingFrame& frame, int number, int light, bool second_looks, std::FILE* out)
+  Dump(const TrainingFrame& frame, int number, int light, Looks looks, std::FILE* out)
       : frame_(frame),
         number_(number),
-        second_looks_(second_looks),
+        looks_(looks),
         out_(out),
         random_(static_cast<std::uint64_t>(number), 43 + static_cast<std::uint32_t>(light)),
         focal_(frame.geometry.focal()),
@@ -110,14 +117,18 @@ class Dump {
 
   void put_second_look(TrunkShape shape, EdgeFit fit) {
     TrunkFeatures::Values features;
-    if (!second_looks_ || !finder_.glance(shape, fit, features)) return;
+    if (looks_ == Looks::first || !finder_.glance(shape, fit, features)) return;
     Judgement judgement;
     judge_at_a_glance(std::span(&features, 1), std::span(&judgement, 1));
-    if (judgement.logit < TrunkFinder::kWorthASecondLook || !random_.chance(kSecondLooks)) return;
+    if (judgement.logit < finder_.effort().worth_a_second_look || !random_.chance(kSecondLooks))
+      return;
     shape = corrected(shape, judgement, focal_);
     if (!finder_.read(frame_.view(), shape, fit, features)) return;
     finder_.refine(shape, fit);
     put(shape, fit, 1 / kSecondLooks);
+    if (looks_ != Looks::close || !finder_.read(frame_.view(), shape, fit, features)) return;
+    judge(std::span(&features, 1), std::span(&judgement, 1));
+    put(corrected(shape, judgement, focal_), fit, 1 / kSecondLooks);
   }
 
   // Shapes close about a true trunk, as the second look meets them.
@@ -178,6 +189,7 @@ class Dump {
     if (here.trunk < 0) return;
     TrunkFeatures::Values features;
     if (!finder_.read(frame_.view(), shape, fit, features)) return;
+    if (looks_ == Looks::close && !random_.chance(in_doubt(features) ? kDoubtful : kClear)) return;
     const float head[kHead] = {static_cast<float>(number_),
                                here.trunk,
                                here.centre_shift,
@@ -186,6 +198,15 @@ class Dump {
                                weight};
     std::fwrite(head, sizeof(float), kHead, out_);
     std::fwrite(features.data(), sizeof(float), features.size(), out_);
+    if (looks_ != Looks::close) return;
+    const TrunkPatches patches = finder_.patches(shape);
+    std::fwrite(&patches, 1, sizeof patches, out_);
+  }
+
+  static bool in_doubt(const TrunkFeatures::Values& features) {
+    Judgement judgement;
+    judge(std::span(&features, 1), std::span(&judgement, 1));
+    return judgement.logit > kLeastDoubt && judgement.logit < kMostDoubt;
   }
 
   // Of the foot, or of where the camera's sight of the trunk ends.
@@ -231,7 +252,7 @@ class Dump {
 
   const TrainingFrame& frame_;
   int number_;
-  bool second_looks_;
+  Looks looks_;
   std::FILE* out_;
   simulate::Random random_;
   double focal_, scale_;
@@ -244,20 +265,23 @@ class Dump {
 }  // namespace bole::train
 
 int main(int count, char** arguments) {
-  if (count < 4) {
-    std::fputs("usage: dump_candidates OUT SECOND_LOOKS FRAME...\n", stderr);
+  using bole::train::Looks;
+  const std::map<std::string_view, Looks> all{
+      {"first", Looks::first}, {"second", Looks::second}, {"close", Looks::close}};
+  const auto looks = count < 4 ? all.end() : all.find(arguments[2]);
+  if (looks == all.end()) {
+    std::fputs("usage: dump_candidates OUT first|second|close FRAME...\n", stderr);
     return 2;
   }
   std::FILE* out = std::fopen(arguments[1], "wb");
   if (!out) return 1;
-  const bool second_looks = std::atoi(arguments[2]) == 1;
   for (int i = 3; i < count; ++i) {
     const std::filesystem::path file = arguments[i];
     const auto frame = bole::train::TrainingFrame::load(file);
     const int number = std::stoi(file.stem().string());
-    bole::train::Dump(frame, number, 0, second_looks, out).run();
+    bole::train::Dump(frame, number, 0, looks->second, out).run();
     const auto lit = bole::train::in_another_light(frame, number);
-    bole::train::Dump(lit, number, 1, second_looks, out).run();
+    bole::train::Dump(lit, number, 1, looks->second, out).run();
   }
   return std::fclose(out) == 0 ? 0 : 1;
 }

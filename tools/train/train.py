@@ -173,30 +173,35 @@ def train(head, z, hidden, mirror, random):
     return jax.tree.map(np.asarray, layers)
 
 
-def report(layers, head, z):
-    out = np.asarray(forward(layers, z.astype(np.float32)))
+def report_outputs(out, head):
     trunk, weight = head[:, 1] == 1, np.minimum(head[:, 5], MOST_WEIGHT)
     log_loss = np.logaddexp(0, np.where(trunk, -out[:, 0], out[:, 0]))
     taken = out[:, 0] > 0
     left = np.median(abs(head[trunk, 2:5] - out[trunk, 1:4]), 0) * 1.48
-    print(f"held out: {len(z)} samples, log loss {np.average(log_loss, weights=weight):.4f}, "
+    print(f"held out: {len(head)} samples, log loss {np.average(log_loss, weights=weight):.4f}, "
           f"recall {taken[trunk].mean():.3f}, "
           f"precision {np.average(trunk[taken], weights=weight[taken]):.3f}, "
           f"left of the shifts {left.round(3)} of {head[trunk, 2:5].std(0).round(3)}")
 
 
+def numbers(values):
+    return ", ".join(np.format_float_positional(v, 6, fractional=False, trim="0") + "F"
+                     for v in values)
+
+
+def matrix(name, values):
+    rows = ",\n    ".join("{" + numbers(row) + "}" for row in values)
+    return f"constexpr float {name}[{len(values)}][{len(values[0])}] = {{\n    {rows}}};\n"
+
+
+def bias(name, values):
+    return f"constexpr std::array<float, {len(values)}> k{name}Bias = {{{numbers(values)}}};\n"
+
+
 def write(standardised, layers, path):
-    def numbers(values):
-        return ", ".join(np.format_float_positional(v, 6, fractional=False, trim="0") + "F"
-                         for v in values)
-
-    def matrix(name, sizes, values):
-        rows = ",\n    ".join("{" + numbers(row) + "}" for row in values)
-        return f"constexpr float {name}{sizes} = {{\n    {rows}}};\n"
-
     units = ("kFirst", "kSecond")[:len(layers) - 1] + ("kOutput",)
     sizes = ("kInputs", *units[:-1], "kOutputs")
-    counts = (len(standardised.mean), *(len(bias) for _, bias in layers))
+    counts = (len(standardised.mean), *(len(values) for _, values in layers))
     with open(path, "w") as out:
         out.write(f"""// Written by tools/train/train.py.
 namespace {path.stem} {{
@@ -205,10 +210,10 @@ constexpr float kLimit = {LIMIT}F;
 constexpr float kMean[kInputs] = {{{numbers(standardised.mean)}}};
 constexpr float kScale[kInputs] = {{{numbers(standardised.scale)}}};
 """)
-        for unit, size, (_, bias) in zip(units, sizes[1:], layers):
-            out.write(f"constexpr std::array<float, {size}> {unit}Bias = {{{numbers(bias)}}};\n")
-        for unit, size, before, (values, _) in zip(units, sizes[1:], sizes, layers):
-            out.write(matrix(f"kTo{unit[1:]}", f"[{before}][{size}]", values))
+        for unit, (_, values) in zip(units, layers):
+            out.write(bias(unit[1:], values))
+        for unit, (values, _) in zip(units, layers):
+            out.write(matrix(f"kTo{unit[1:]}", values))
         out.write(f"}}  // namespace {path.stem}\n")
 
 
@@ -221,7 +226,8 @@ def fit(head, x, shown, mirror, hidden, path):
     standardised = Standardised(shown(x[::8]), mirror)
     layers = train(weighed(head, x), standardised(shown(x)), hidden, mirror,
                    np.random.default_rng(0))
-    report(layers, tested[0], standardised(shown(tested[1])))
+    z = standardised(shown(tested[1])).astype(np.float32)
+    report_outputs(np.asarray(forward(layers, z)), tested[0])
     write(standardised, layers, path)
 
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "detect/close_look.h"
 #include "golden_file.h"
 
 namespace bole {
@@ -16,6 +17,15 @@ TrunkFeatures::Values some_features() {
   for (int i = 0; i < TrunkFeatures::kCount; ++i)
     features[i] = std::sin(0.37F * static_cast<float>(i * i % 101));
   return features;
+}
+
+TrunkPatches some_patches() {
+  TrunkPatches patches;
+  for (int i = 0; i < TrunkPatches::kCells; ++i) {
+    patches.trunk[i] = static_cast<std::int8_t>(i * i % 101 - 50);
+    patches.around[i] = static_cast<std::int8_t>(i * i % 67 - 33);
+  }
+  return patches;
 }
 
 void expect_golden(const char* name, const Judgement& now) {
@@ -40,6 +50,16 @@ Judgement one(const Judge& judge, const TrunkFeatures::Values& features) {
 TEST(Network, JudgesAsTheTrainedWeightsSay) {
   expect_golden("detect/judgement.bin", one(judge, some_features()));
   expect_golden("detect/glance.bin", one(judge_at_a_glance, some_features()));
+  expect_golden("detect/close_look.bin", judge_closely(some_features(), some_patches()));
+}
+
+TEST(Network, SeesBothPatchesInACloseLook) {
+  const Judgement judgement = judge_closely(some_features(), some_patches());
+  for (const auto patch : {&TrunkPatches::trunk, &TrunkPatches::around}) {
+    TrunkPatches patches = some_patches();
+    std::reverse((patches.*patch).begin(), (patches.*patch).end());
+    EXPECT_NE(judge_closely(some_features(), patches).logit, judgement.logit);
+  }
 }
 
 TEST(Network, DoesNotLookAtTheFootAtAGlance) {

@@ -1,0 +1,71 @@
+#include "detect/trunk_patches.h"
+
+#include <algorithm>
+
+#include "detect/patch_kernels.h"
+
+namespace bole {
+namespace {
+
+constexpr int kSide = TrunkPatches::kSide;
+static_assert(kSide == kPatchSide);
+constexpr float kReference = 1440 / 6.2831853F;  // the focal length that pixel limits are meant for
+constexpr float kLeastAround = 40, kMostAround = 600;  // columns to each side
+constexpr float kLeastSpread = 0.06F;                  // of log brightness
+
+// What of the panorama a patch shows.
+struct Extent {
+  float first = 0, last = 0;  // bands, with their fractions
+  float middle = 0;           // column, in the middle of band 0
+  float lean = 0;             // columns a band
+  float half = 0;             // columns to each side
+};
+
+TrunkPatches::Patch read_patch(const Bands& bands, const Extent& extent, bool dark) {
+  PatchCells cells;
+  const float rows = (extent.last - extent.first) / kSide;
+  PatchColumns columns{.cell = 2 * extent.half / kSide,
+                       .least = -bands.margin(),
+                       .behind = bands.width() + bands.margin() - 1};
+  constexpr float kUnit = float{PatchCells::kLevels} / (float{Bands::kScale} * float{kPatchParts});
+  for (int y = 0; y < kSide; ++y) {
+    const auto band_at = [&](int row) {
+      return static_cast<int>(extent.first + rows * static_cast<float>(row));
+    };
+    const int from = std::clamp(band_at(y), 0, bands.count() - 1);
+    const int to = std::clamp(band_at(y + 1), from + 1, bands.count());
+    for (int band = from; band < to; ++band) {
+      columns.first = extent.middle + extent.lean * static_cast<float>(band) - extent.half;
+      add_cells(bands.sum(band), columns, cells.sums[y].data());
+    }
+    cells.factors[y] = kUnit / (columns.cell * static_cast<float>(to - from));
+  }
+  TrunkPatches::Patch patch;
+  standardise_cells(cells, (dark ? 1.0F : -1.0F) * TrunkPatches::kUnits, kLeastSpread,
+                    patch.data());
+  return patch;
+}
+
+}  // namespace
+
+TrunkPatches read_patches(const Bands& bands, const TrunkShape& shape, int first_band,
+                          double focal) {
+  const float scale = static_cast<float>(focal) / kReference;
+  const float width = shape.width();
+  const float lean = shape.slope() * Bands::kRows;
+  const float foot = shape.foot / Bands::kRows;
+  const auto first = static_cast<float>(first_band);
+  const Extent trunk{.first = first,
+                     .last = std::max(foot + width / Bands::kRows, first + 2),
+                     .middle = shape.centre() + lean * (0.5F - foot),
+                     .lean = lean,
+                     .half = 2 * width};
+  const Extent around{.first = 0,
+                      .last = static_cast<float>(bands.count()),
+                      .middle = shape.centre(),
+                      .half = std::clamp(6 * width, kLeastAround * scale, kMostAround * scale)};
+  return {.trunk = read_patch(bands, trunk, shape.dark),
+          .around = read_patch(bands, around, shape.dark)};
+}
+
+}  // namespace bole

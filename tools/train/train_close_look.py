@@ -1,0 +1,199 @@
+#!/usr/bin/env python3
+"""Trains the network for a close look on what `dump_candidates OUT close` wrote.
+
+usage: train_close_look.py --out src/detect [DUMP...]
+
+Without a dump it writes a network that knows nothing, to be built with. Each of the two patches
+goes through convolutions of 3 x 3 cells at every other cell to a summary; two hidden layers see
+both summaries and the features. Outputs, likelihood, weights of samples and the frames that are
+held out are those of train.py, and so are mirror and noise.
+"""
+import argparse
+import pathlib
+
+import numpy as np
+import torch
+from torch import nn
+from torch.nn import functional
+
+import train
+
+SIDE = int(train.constant("kSide", "src/detect/trunk_patches.h"))
+CELL_UNITS = train.constant("kUnits", "src/detect/trunk_patches.h")
+PATCHES = ("trunk", "around")
+CHANNELS = (1, 16, 16, 32, 48)
+LAYERS = ("First", "Second", "Third", "Fourth")
+SUMMARY, FIRST, SECOND = 48, 96, 48
+LAST_SIDE = SIDE // 2 ** (len(CHANNELS) - 1)
+EPOCHS, BATCH, RATE, DECAY, NOISE = 12, 1024, 3e-3, 1e-4, 0.1
+MOST_UNIT = 3.5  # what whole numbers leave room for
+
+
+def leaky(x):
+    return functional.leaky_relu(x, train.LEAK)
+
+
+class PatchSummary(nn.Module):
+    def __init__(self):
+        super().__init__()
+        self.convolutions = nn.ModuleList(
+            nn.Conv2d(a, b, 3, 2, 1) for a, b in zip(CHANNELS, CHANNELS[1:]))
+        self.summary = nn.Linear(CHANNELS[-1] * LAST_SIDE ** 2, SUMMARY)
+
+    def layers(self):
+        return [*self.convolutions, self.summary]
+
+    def forward(self, x):
+        for convolution in self.convolutions:
+            x = leaky(convolution(x))
+        return leaky(self.summary(x.flatten(1)))
+
+
+class CloseLook(nn.Module):
+    def __init__(self):
+        super().__init__()
+        self.patches = nn.ModuleList(PatchSummary() for _ in PATCHES)
+        self.first = nn.Linear(train.FEATURES + len(PATCHES) * SUMMARY, FIRST)
+        self.second = nn.Linear(FIRST, SECOND)
+        self.output = nn.Linear(SECOND, train.OUTPUTS)
+
+    def forward(self, features, patches):
+        seen = [net(patches[:, k:k + 1]) for k, net in enumerate(self.patches)]
+        return self.output(leaky(self.second(leaky(self.first(torch.cat([features, *seen], 1))))))
+
+
+class Samples:
+    def __init__(self, paths):
+        floats = train.HEAD + train.FEATURES
+        size = 4 * floats + len(PATCHES) * SIDE ** 2
+        heads, features, patches = [], [], []
+        for path in paths:
+            rows = np.memmap(path, np.uint8, "r").reshape(-1, size)
+            numbers = np.ascontiguousarray(rows[:, :4 * floats]).view(np.float32)
+            heads.append(numbers[:, :train.HEAD].copy())
+            features.append(numbers[:, train.HEAD:].astype(np.float16))
+            patches.append(np.ascontiguousarray(rows[:, 4 * floats:]).view(np.int8))
+        self.head, self.features, self.patches = map(np.concatenate, (heads, features, patches))
+
+    def batch(self, chosen, standardised):
+        features = torch.from_numpy(standardised(self.features[chosen]).astype(np.float32))
+        patches = torch.from_numpy(self.patches[chosen]).float() / CELL_UNITS
+        return features, patches.view(-1, len(PATCHES), SIDE, SIDE)
+
+
+def loss(out, head):
+    """As in train.py."""
+    trunk, shifts, weight = head[:, 1], head[:, 2:5], head[:, 5]
+    logit = functional.binary_cross_entropy_with_logits(out[:, 0], trunk, reduction="none")
+    log_sigma = out[:, 4:].clamp(-4.5, 3)
+    error = (out[:, 1:4] - shifts) * torch.exp(-log_sigma)
+    far = functional.huber_loss(error, torch.zeros_like(error), reduction="none", delta=3.0)
+    shift = (far + log_sigma).sum(1)
+    return (weight * (logit + train.SHIFTS_WEIGHT * trunk * shift)).mean()
+
+
+def fit(samples, shown, standardised):
+    source, sign = train.mirror()
+    head = train.weighed(samples.head[shown], samples.features[shown])
+    mirrored = torch.from_numpy(train.MIRRORED_HEAD)
+    net = CloseLook()
+    steps = len(shown) // BATCH
+    optimiser = torch.optim.AdamW(net.parameters(), RATE, weight_decay=DECAY)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, RATE, EPOCHS * steps, pct_start=0.1)
+    random = np.random.default_rng(0)
+    for epoch in range(EPOCHS):
+        for chosen in random.permutation(len(shown))[:steps * BATCH].reshape(steps, BATCH):
+            chosen.sort()
+            features, patches = samples.batch(shown[chosen], standardised)
+            truth = torch.from_numpy(head[chosen])
+            if random.random() < 0.5:
+                features = features[:, source] * torch.from_numpy(sign)
+                patches, truth = patches.flip(3), truth * mirrored
+            features += NOISE * torch.randn_like(features)
+            optimiser.zero_grad()
+            loss(net(features, patches), truth).backward()
+            optimiser.step()
+            schedule.step()
+        print(f"round {epoch + 1} of {EPOCHS}", flush=True)
+    return net
+
+
+@torch.no_grad()
+def report(net, samples, shown, standardised):
+    out = np.concatenate([net(*samples.batch(part, standardised)).numpy()
+                          for part in np.array_split(shown, 1 + len(shown) // 4096)])
+    train.report_outputs(out, samples.head[shown])
+
+
+@torch.no_grad()
+def even_out(net, patches):
+    """Makes all units fit into whole numbers: leaky units keep their shape when they are scaled, so
+    what one layer is divided by the next is multiplied by."""
+    for k, summary in enumerate(net.patches):
+        x = patches[:, k:k + 1]
+        layers = summary.layers()
+        inputs = slice(train.FEATURES + k * SUMMARY, train.FEATURES + (k + 1) * SUMMARY)
+        following = [layer.weight for layer in layers[1:]] + [net.first.weight[:, inputs]]
+        for layer, after in zip(layers, following):
+            x = leaky(layer(x.flatten(1) if isinstance(layer, nn.Linear) else x))
+            share = MOST_UNIT / x.abs().flatten().sort().values[-1 - x.numel() // 100000]
+            layer.weight *= share
+            layer.bias *= share
+            x *= share
+            after /= share
+
+
+def write(net, standardised, path):
+    with open(path, "w") as out:
+        out.write(f"""// Written by tools/train/train_close_look.py.
+namespace {path.stem} {{
+constexpr int kInputs = {net.first.in_features}, kFirst = {FIRST}, kSecond = {SECOND}, \
+kOutputs = {train.OUTPUTS};
+constexpr float kLimit = {train.LIMIT}F;
+constexpr float kMean[] = {{{train.numbers(standardised.mean)}}};
+constexpr float kScale[] = {{{train.numbers(standardised.scale)}}};
+""")
+
+        def layer(name, weights, bias, indent=""):
+            out.write(indent + train.bias(name, bias.detach().numpy()))
+            out.write(indent + train.matrix(f"kTo{name}", weights.detach().numpy()))
+
+        for name, summary in zip(PATCHES, net.patches):
+            out.write(f"struct {name.title()} {{\n")
+            for unit, convolution in zip(LAYERS, summary.convolutions):
+                weights = convolution.weight.permute(2, 3, 1, 0)  # row, column, from, to
+                layer(unit, weights.reshape(-1, weights.shape[3]), convolution.bias, "  static ")
+            cells = summary.summary.weight.view(SUMMARY, CHANNELS[-1], LAST_SIDE, LAST_SIDE)
+            layer("Summary", cells.permute(2, 3, 1, 0).reshape(-1, SUMMARY), summary.summary.bias,
+                  "  static ")
+            out.write("};\n")
+        for name, dense in (("First", net.first), ("Second", net.second), ("Output", net.output)):
+            layer(name, dense.weight.T, dense.bias)
+        out.write(f"}}  // namespace {path.stem}\n")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", required=True, type=pathlib.Path,
+                        help="the folder of close_look_weights.inc")
+    parser.add_argument("dumps", nargs="*")
+    arguments = parser.parse_args()
+    torch.manual_seed(0)
+    path = arguments.out / "close_look_weights.inc"
+    if not arguments.dumps:
+        nothing = np.zeros((1, train.FEATURES), np.float32)
+        write(CloseLook(), train.Standardised(nothing, train.mirror()), path)
+        return
+    samples = Samples(arguments.dumps)
+    held_out = samples.head[:, 0].astype(int) % 8 == 0
+    shown = np.flatnonzero(~held_out)
+    standardised = train.Standardised(samples.features[shown[::8]], train.mirror())
+    net = fit(samples, shown, standardised)
+    report(net, samples, np.flatnonzero(held_out), standardised)
+    even_out(net, samples.batch(shown[::200], standardised)[1])
+    write(net, standardised, path)
+
+
+if __name__ == "__main__":
+    main()
