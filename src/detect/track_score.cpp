@@ -6,7 +6,7 @@
 namespace bole {
 namespace {
 
-constexpr double kShift = -3.05, kNow = 0.40, kBest = 0.84, kSteady = 2.06, kKnown = 1.19;
+constexpr double kShift = -3.03, kNow = 0.30, kBest = 1.03, kSteady = 1.80, kKnown = 1.11;
 
 double log_odds(double probability) {
   constexpr double kCertain = 1e-4;
