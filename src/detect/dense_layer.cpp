@@ -30,7 +30,7 @@ Windows one_after_the_other(const std::int16_t* in, int looks, int pairs) {
       .first = in, .rows = 1, .across = looks, .step = 2 * pairs, .runs = 1, .run_pairs = pairs};
 }
 
-std::int16_t whole_units(float value, float limit) {
+std::int16_t to_whole_units(float value, float limit) {
   const float bound = std::clamp(value, -limit, limit);
   return static_cast<std::int16_t>(static_cast<int>(bound * float{kInputUnits} + (kFar + 0.5F)) -
                                    static_cast<int>(kFar));
@@ -260,7 +260,7 @@ void standardise(const float* in, int count, const float* mean, const float* sca
 
 void standardise_plain(const float* in, int count, const float* mean, const float* scale,
                        float limit, std::int16_t* out) {
-  for (int i = 0; i < count; ++i) out[i] = whole_units((in[i] - mean[i]) * scale[i], limit);
+  for (int i = 0; i < count; ++i) out[i] = to_whole_units((in[i] - mean[i]) * scale[i], limit);
 }
 
 void quantise(const float* in, int count, std::int16_t* out) {
@@ -268,7 +268,7 @@ void quantise(const float* in, int count, std::int16_t* out) {
 }
 
 void quantise_plain(const float* in, int count, std::int16_t* out) {
-  for (int i = 0; i < count; ++i) out[i] = whole_units(in[i], kMostInput);
+  for (int i = 0; i < count; ++i) out[i] = to_whole_units(in[i], kMostInput);
 }
 
 }  // namespace bole

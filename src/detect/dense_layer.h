@@ -8,7 +8,7 @@ namespace bole {
 /// The inner loops of the networks, in whole vectors of whatever this processor has, and the plain
 /// loops that say what they must give: equal results.
 ///
-/// The wide layer is summed in whole numbers, which are the same in any order, half as long as
+/// Wide layers are summed in whole numbers, which are the same in any order, half as long as
 /// floats and multiplied two at a time: inputs in units of 1 / kInputUnits, weights of
 /// 1 / kWeightUnits.
 inline constexpr int kInputUnits = 2048, kWeightUnits = 2048;
@@ -40,8 +40,8 @@ void hidden_layer(const std::int16_t* in, int looks, int pairs, const std::int16
 void hidden_layer_plain(const std::int16_t* in, int looks, int pairs, const std::int16_t* weights,
                         const float* bias, int units, float* out);
 
-/// Inputs that lie in a picture: each is a window of so many runs of pairs, at every `step`-th
-/// element of a row and every `row_step`-th of the rows.
+/// Inputs that lie in a picture: each is a window, the pairs of its runs one after the other, at
+/// every `step`-th element of a row and every `row_step`-th of the rows. Runs may overlap.
 struct Windows {
   const std::int16_t* first = nullptr;
   int rows = 0, across = 0;               ///< windows

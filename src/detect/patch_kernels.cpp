@@ -18,7 +18,10 @@ namespace bole {
 namespace {
 
 constexpr int kBorders = kPatchSide + 1, kVectorBorders = 48;  // whole vectors of at most 16
-constexpr float kMostLevel = 32000, kMostOut = 127;
+constexpr float kMostOut = 127;
+// More than there are between black and white; and the squares about the mean of a patch of levels
+// up to this add up to less than 2^32.
+constexpr float kMostLevel = 4095;
 static_assert(kPatchParts == 1 << 4);
 
 struct BorderBuffers {
@@ -51,7 +54,7 @@ HWY_INLINE void FindBorders(const PatchColumns& columns, BorderBuffers& borders)
   const Ints di;
   const auto first = hn::Set(d, columns.first), cell = hn::Set(d, columns.cell);
   const auto least = hn::Set(di, columns.least * kPatchParts);
-  const auto most = hn::Set(di, columns.behind * kPatchParts);
+  const auto most = hn::Set(di, columns.last * kPatchParts);
   for (int i = 0; i < kVectorBorders; i += static_cast<int>(hn::Lanes(d))) {
     const auto column = hn::Add(first, hn::Mul(cell, hn::Iota(d, static_cast<float>(i))));
     const auto far = hn::Add(hn::Mul(column, hn::Set(d, float{kPatchParts})),
@@ -159,7 +162,7 @@ void add_cells_plain(const std::uint16_t* sums, const PatchColumns& columns, std
     const float far = (columns.first + columns.cell * static_cast<float>(i)) * kPatchParts +
                       (float{kPatchParts} * kFar + 0.5F);
     return std::clamp(static_cast<int>(far) - kPatchParts * static_cast<int>(kFar),
-                      columns.least * kPatchParts, columns.behind * kPatchParts);
+                      columns.least * kPatchParts, columns.last * kPatchParts);
   };
   for (int i = 0; i < kPatchSide; ++i) {
     const int from = border(i), to = border(i + 1);

@@ -13,12 +13,12 @@ inline constexpr int kPatchParts = 16;  ///< of a column, that borders of cells 
 /// Borders of kPatchSide cells across one band.
 struct PatchColumns {
   float first = 0, cell = 0;  ///< column of the first border, and from one to the next
-  int least = 0, behind = 0;  ///< borders are kept within these columns
+  int least = 0, last = 0;    ///< borders are kept within these columns, last + 1 is read, too
 };
 
 /// Adds to cells[i] kPatchParts times the sum of the log brightness between border i and the next,
-/// each at the nearest part of a column. `sums` are those of a band, at column 0; no cell is wider
-/// than Bands::kMostColumns.
+/// each at the nearest part of a column. `sums` are those of a band, at column 0, read two at a
+/// time as a little-endian number; no cell is wider than Bands::kMostColumns.
 void add_cells(const std::uint16_t* sums, const PatchColumns& columns, std::int32_t* cells);
 void add_cells_plain(const std::uint16_t* sums, const PatchColumns& columns, std::int32_t* cells);
 

@@ -16,14 +16,13 @@ using F = TrunkFeatures;
 // Borders of the cells across, in widths from the middle.
 constexpr std::array<float, F::kAcross + 1> kBorders = {
     -1.5F, -1.0F, -0.75F, -0.55F, -0.4F, -0.2F, 0.0F, 0.2F, 0.4F, 0.55F, 0.75F, 1.0F, 1.5F};
-constexpr float kReference = 1440 / 6.2831853F;  // the focal length that pixel limits are meant for
-constexpr float kLeastSpread = 0.06F;            // of log brightness
-constexpr int kTall = 48;                        // bands
+constexpr float kLeastSpread = 0.06F;  // of log brightness
+constexpr int kTall = 48;              // bands
 
 }  // namespace
 
 float foot_unit(const TrunkShape& shape, double focal) {
-  const float scale = static_cast<float>(focal) / kReference;
+  const float scale = static_cast<float>(focal) / kReferenceFocal;
   return std::clamp(0.12F * shape.width(), 0.8F * scale, 5.0F * scale);
 }
 
@@ -38,7 +37,7 @@ FeatureReader::FeatureReader(const DetectorSetup& setup)
 float FeatureReader::read_grid(const Bands& bands, const TrunkShape& shape, int first_band,
                                Care care, float* out) const {
   const float unit =
-      std::clamp(0.3F * shape.width(), 3.0F, 14.0F * static_cast<float>(focal_) / kReference);
+      std::clamp(0.3F * shape.width(), 3.0F, 14.0F * static_cast<float>(focal_) / kReferenceFocal);
   const float top = static_cast<float>(first_band * Bands::kRows);
   std::array<float, F::kHeights + 1> borders;
   const float part = std::max(shape.foot - 4 * unit - top, 6.0F) / 6;
@@ -151,7 +150,7 @@ float FeatureReader::read_but_foot(const Bands& bands, const TrunkShape& shape, 
   const float w = shape.width();
   const float top = static_cast<float>(first_band * Bands::kRows);
   const float numbers[F::kNumbers] = {
-      std::log(w * kReference / (20 * f)),
+      std::log(w * kReferenceFocal / (20 * f)),
       std::log(w / 6),
       spread,
       shape.dark ? 1.0F : -1.0F,

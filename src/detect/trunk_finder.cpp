@@ -41,7 +41,7 @@ TrunkFinder::TrunkFinder(const DetectorSetup& setup)
           static_cast<float>(setup.panorama.horizon_row() + 0.5 +
                              focal_ * setup.height / (kFarther * setup.search.range.high))),
       effort_(Effort::for_reach(setup.search.range.high)),
-      bands_(setup, Templates::margin(setup)),
+      bands_(setup, std::max(Templates::margin(setup), patch_reach(focal_))),
       templates_(setup, bands_, effort_.candidates),
       fitter_(setup),
       reader_(setup) {
@@ -84,7 +84,14 @@ bool TrunkFinder::glance(const TrunkShape& shape, const EdgeFit& fit,
 }
 
 TrunkPatches TrunkFinder::patches(const TrunkShape& shape) const {
-  return read_patches(bands_, shape, fitter_.first_band(shape.left, shape.right), focal_);
+  TrunkShape within = shape;
+  if (wraps_) {
+    const auto turn = static_cast<float>(columns_);
+    const float shift = turn * std::floor(shape.centre() / turn);
+    within.left -= shift;
+    within.right -= shift;
+  }
+  return read_patches(bands_, within, fitter_.first_band(shape.left, shape.right), focal_);
 }
 
 // Most candidates about a trunk are that trunk seen amiss: those that look best go first, and what
@@ -194,7 +201,8 @@ void TrunkFinder::settle(Trunk& trunk, const Judgement& judgement) const {
   trunk.cut = trunk.shape.foot + trunk.foot_sigma + Bands::kRows > last_row(trunk.shape.centre());
 }
 
-// Two networks that were taught apart err apart: the mean of what they say is better than either.
+// Two networks that were taught apart err apart: the mean of what they say of the probability is
+// better than either. Where the trunk is, the one that sees pixels knows better.
 void TrunkFinder::look_closely(const PanoramaView& panorama, Trunk& trunk) const {
   trunk.seen_closely = true;
   TrunkFeatures::Values features;
@@ -292,7 +300,8 @@ bool TrunkFinder::same_pixels(const TrunkShape& a, const TrunkShape& b) const {
 
 // Of two that are as likely the wider one stays: a lit half looks like a trunk, too. What is known
 // of a trunk from earlier frames goes before that. What is in doubt when its turn comes is looked
-// at closely, and waits for its turn once more.
+// at closely, and waits for its turn once more; what that makes surer comes after those that have
+// had their turn, all the same.
 void TrunkFinder::suppress(const PanoramaView& panorama) {
   const auto rank = [](const Trunk& t) {
     return t.logit + std::log(t.shape.width()) + (t.expected ? kExpectation : 0);

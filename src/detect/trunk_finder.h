@@ -26,14 +26,14 @@ struct Trunk {
 
 /// How much is looked at in a frame.
 struct Effort {
-  int candidates = 0;
+  int candidates = 0;          ///< at most
   int close_looks = 0;         ///< at most
   float worth_other_feet = 0;  ///< logit of a first look: with a wrong foot a trunk looks like none
   float worth_a_second_look = 0;  ///< logit of a first look
   float doubt = 0;                ///< logits up to this, of either sign, are worth a close look
 
   /// The farther the search goes, the more trunks there are, and the harder they are to tell.
-  static Effort for_reach(double range);
+  static Effort for_reach(double range);  ///< the farthest that is searched, metres
 };
 
 /// Candidates, their refinement and judgement.
@@ -41,9 +41,10 @@ class TrunkFinder {
  public:
   explicit TrunkFinder(const DetectorSetup& setup);
 
-  /// Trunks that are not out of the question, the better ones first, as to probability and width;
-  /// valid until the next call. `expected`: outlines to try where no trunk like them is found for
-  /// sure, whatever the templates say; they go before others of the same pixels.
+  /// Trunks that are not out of the question, the better ones first, as to probability and width
+  /// before the close looks; valid until the next call. `expected`: outlines to try where no trunk
+  /// like them is found for sure, whatever the templates say; they go before others of the same
+  /// pixels.
   std::span<Trunk> find(const PanoramaView& panorama, std::span<const Candidate> expected = {});
 
   /// The steps of find, for the training of the network.
@@ -64,7 +65,7 @@ class TrunkFinder {
   /// The same of what judge_at_a_glance is shown.
   [[nodiscard]] bool glance(const TrunkShape& shape, const EdgeFit& fit,
                             TrunkFeatures::Values& out) const;
-  /// Of an outline that can be read.
+  /// Of the latest panorama that was searched.
   TrunkPatches patches(const TrunkShape& shape) const;
 
  private:

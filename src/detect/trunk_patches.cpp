@@ -9,9 +9,10 @@ namespace {
 
 constexpr int kSide = TrunkPatches::kSide;
 static_assert(kSide == kPatchSide);
-constexpr float kReference = 1440 / 6.2831853F;  // the focal length that pixel limits are meant for
-constexpr float kLeastAround = 40, kMostAround = 600;  // columns to each side
-constexpr float kLeastSpread = 0.06F;                  // of log brightness
+constexpr float kLeastAround = 40, kMostAround = 600;  // columns to each side, of 1440 a turn
+constexpr float kMostHalf = 0.5F * kSide * Bands::kMostColumns;  // of the cells of a patch
+constexpr float kLean = 64;                                      // columns that a trunk may lean by
+constexpr float kLeastSpread = 0.06F;                            // of log brightness
 
 // What of the panorama a patch shows.
 struct Extent {
@@ -26,7 +27,7 @@ TrunkPatches::Patch read_patch(const Bands& bands, const Extent& extent, bool da
   const float rows = (extent.last - extent.first) / kSide;
   PatchColumns columns{.cell = 2 * extent.half / kSide,
                        .least = -bands.margin(),
-                       .behind = bands.width() + bands.margin() - 1};
+                       .last = bands.width() + bands.margin() - 1};
   constexpr float kUnit = float{PatchCells::kLevels} / (float{Bands::kScale} * float{kPatchParts});
   for (int y = 0; y < kSide; ++y) {
     const auto band_at = [&](int row) {
@@ -48,9 +49,14 @@ TrunkPatches::Patch read_patch(const Bands& bands, const Extent& extent, bool da
 
 }  // namespace
 
+int patch_reach(double focal) {
+  const float scale = static_cast<float>(focal) / kReferenceFocal;
+  return static_cast<int>(std::min(kMostAround * scale, kMostHalf) + kLean * scale) + 1;
+}
+
 TrunkPatches read_patches(const Bands& bands, const TrunkShape& shape, int first_band,
                           double focal) {
-  const float scale = static_cast<float>(focal) / kReference;
+  const float scale = static_cast<float>(focal) / kReferenceFocal;
   const float width = shape.width();
   const float lean = shape.slope() * Bands::kRows;
   const float foot = shape.foot / Bands::kRows;
@@ -59,11 +65,13 @@ TrunkPatches read_patches(const Bands& bands, const TrunkShape& shape, int first
                      .last = std::max(foot + width / Bands::kRows, first + 2),
                      .middle = shape.centre() + lean * (0.5F - foot),
                      .lean = lean,
-                     .half = 2 * width};
-  const Extent around{.first = 0,
-                      .last = static_cast<float>(bands.count()),
-                      .middle = shape.centre(),
-                      .half = std::clamp(6 * width, kLeastAround * scale, kMostAround * scale)};
+                     .half = std::min(2 * width, kMostHalf)};
+  const Extent around{
+      .first = 0,
+      .last = static_cast<float>(bands.count()),
+      .middle = shape.centre(),
+      .half =
+          std::min(std::clamp(6 * width, kLeastAround * scale, kMostAround * scale), kMostHalf)};
   return {.trunk = read_patch(bands, trunk, shape.dark),
           .around = read_patch(bands, around, shape.dark)};
 }

@@ -10,6 +10,9 @@
 
 namespace bole {
 
+/// Columns a radian of the panorama that limits in columns and rows are meant for.
+inline constexpr float kReferenceFocal = 1440 / 6.2831853F;
+
 /// A trunk's outline in the panorama: two straight edges that end at the foot. Columns are
 /// continuous, 0 at the left border of column 0; rows likewise.
 struct TrunkShape {

@@ -189,6 +189,7 @@ class Dump {
     if (here.trunk < 0) return;
     TrunkFeatures::Values features;
     if (!finder_.read(frame_.view(), shape, fit, features)) return;
+    // Weights stay: the close look is for the doubtful, let it dwell on them.
     if (looks_ == Looks::close && !random_.chance(in_doubt(features) ? kDoubtful : kClear)) return;
     const float head[kHead] = {static_cast<float>(number_),
                                here.trunk,

@@ -6,7 +6,8 @@ usage: train_close_look.py --out src/detect [DUMP...]
 Without a dump it writes a network that knows nothing, to be built with. Each of the two patches
 goes through convolutions of 3 x 3 cells at every other cell to a summary; two hidden layers see
 both summaries and the features. Outputs, likelihood, weights of samples and the frames that are
-held out are those of train.py, and so are mirror and noise.
+held out are those of train.py; a whole batch is shown mirrored, and the features' noise stays to the
+end. What the network says of the inputs of the detector's own test goes to the golden file of that.
 """
 import argparse
 import pathlib
@@ -172,6 +173,18 @@ constexpr float kScale[] = {{{train.numbers(standardised.scale)}}};
         out.write(f"}}  // namespace {path.stem}\n")
 
 
+@torch.no_grad()
+def write_golden(net, standardised, path):
+    """Of the features and patches of some_features() and some_patches() in network_test.cpp."""
+    i = np.arange(train.FEATURES)
+    features = np.sin(np.float32(0.37) * (i * i % 101).astype(np.float32))[None]
+    i = np.arange(SIDE ** 2)
+    patches = np.stack([i * i % 101 - 50, i * i % 67 - 33]).reshape(1, len(PATCHES), SIDE, SIDE)
+    out = net(torch.from_numpy(standardised(features).astype(np.float32)),
+              torch.from_numpy(patches).float() / CELL_UNITS)
+    path.write_bytes(out.numpy().astype("<f4").tobytes())
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -193,6 +206,7 @@ def main():
     report(net, samples, np.flatnonzero(held_out), standardised)
     even_out(net, samples.batch(shown[::200], standardised)[1])
     write(net, standardised, path)
+    write_golden(net, standardised, train.ROOT / "tests/golden/detect/close_look.bin")
 
 
 if __name__ == "__main__":

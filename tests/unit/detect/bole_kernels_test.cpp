@@ -1,41 +1,25 @@
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
 
-#include <string>
+#include <algorithm>
 #include <vector>
 
 #include "detect/band_kernels.h"
 #include "detect/bands.h"
-#include "detect/dense_layer.h"
 #include "detect/edge_kernels.h"
 #include "detect/edge_search.h"
 #include "detect/foot_kernels.h"
 #include "detect/grid_kernels.h"
-#include "detect/patch_kernels.h"
 #include "detect/row_contrasts.h"
 #include "detect/template_kernels.h"
+#include "each_target.h"
 #include "simulate/noise.h"
 
 namespace bole {
 namespace {
 
-// The kernels of one instruction set after the other.
-class Kernels : public testing::TestWithParam<std::int64_t> {
- protected:
-  Kernels() { choose(GetParam()); }
-  ~Kernels() override { choose(0); }
+class Kernels : public EachTarget {};
 
- private:
-  static void choose(std::int64_t target) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-};
-
-INSTANTIATE_TEST_SUITE_P(All, Kernels, testing::ValuesIn(hwy::SupportedAndGeneratedTargets()),
-                         [](const auto& target) {
-                           return std::string(hwy::TargetName(target.param));
-                         });
+INSTANTIATE_TEST_SUITE_P(All, Kernels, each_target(), target_name);
 
 std::vector<std::uint16_t> running_sums(int count, simulate::Random& random) {
   std::vector<std::uint16_t> sums(count);
@@ -141,94 +125,6 @@ TEST_P(Kernels, SumColumnsAsThePlainLoops) {
   for (int k = 0; k < 4; ++k)
     for (int i = 0; i < kCount; ++i)
       ASSERT_EQ(results[k][i], results[4 + k][i]) << k << " at " << i;
-}
-
-TEST_P(Kernels, JudgeAsThePlainLoops) {
-  simulate::Random random(4);
-  constexpr int kLooks = kLooksAtOnce + 2;
-  std::vector<std::int16_t> in(206 * kLooks), weights(206 * 96);
-  for (auto& value : in) value = static_cast<std::int16_t>(random.uniform(-8192, 8192));
-  for (auto& weight : weights) weight = static_cast<std::int16_t>(1000 * random.normal());
-  std::vector<float> bias(96), fast(96 * kLooks), plain(96 * kLooks), second(96 * 48);
-  for (auto* values : {&bias, &second})
-    for (float& value : *values) value = random.normal();
-  for (const int units : {16, 32, 48, 96}) {
-    hidden_layer(in.data(), kLooks, 103, weights.data(), bias.data(), units, fast.data());
-    hidden_layer_plain(in.data(), kLooks, 103, weights.data(), bias.data(), units, plain.data());
-    EXPECT_EQ(fast, plain);
-  }
-  for (const int units : {8, 48}) {
-    std::vector<float> out(units, 0.5F), out_plain = out;
-    add_products(plain.data(), 96, second.data(), units, out.data());
-    add_products_plain(plain.data(), 96, second.data(), units, out_plain.data());
-    EXPECT_EQ(out, out_plain);
-  }
-}
-
-TEST_P(Kernels, ConvolveAsThePlainLoops) {
-  simulate::Random random(9);
-  std::vector<std::int16_t> cells(9 * 9 * 16), weights(std::size_t{3} * 48 * 48);
-  for (auto* values : {&cells, &weights})
-    for (std::int16_t& value : *values) value = static_cast<std::int16_t>(900 * random.normal());
-  std::vector<float> bias(48), fast(16 * 48), plain(16 * 48);
-  for (float& value : bias) value = random.normal();
-  const Windows windows{.first = cells.data(),
-                        .rows = 4,
-                        .across = 4,
-                        .step = 32,
-                        .row_step = 2 * 9 * 16,
-                        .runs = 3,
-                        .run_pairs = 24,
-                        .run_step = 9 * 16};
-  for (const int units : {16, 32, 48}) {
-    convolve(windows, weights.data(), bias.data(), units, fast.data());
-    convolve_plain(windows, weights.data(), bias.data(), units, plain.data());
-    EXPECT_EQ(fast, plain);
-  }
-}
-
-TEST_P(Kernels, QuantiseAsThePlainLoop) {
-  simulate::Random random(8);
-  std::vector<float> in(96);
-  for (float& value : in) value = 3 * random.normal();
-  std::vector<std::int16_t> fast(96), plain(96);
-  quantise(in.data(), 96, fast.data());
-  quantise_plain(in.data(), 96, plain.data());
-  EXPECT_EQ(fast, plain);
-}
-
-TEST_P(Kernels, ReadPatchesAsThePlainLoops) {
-  for (int seed = 0; seed < 40; ++seed) {
-    simulate::Random random(seed, 5);
-    const std::vector<std::uint16_t> sums = running_sums(2000, random);
-    PatchColumns columns{.first = random.uniform(-100, 1100),
-                         .cell = random.uniform(0.2F, 45),
-                         .least = -500,
-                         .behind = 1498};
-    PatchCells fast, plain;
-    for (int y = 0; y < kPatchSide; ++y) {
-      columns.first += 0.37F;
-      add_cells(sums.data() + 500, columns, fast.sums[y].data());
-      add_cells_plain(sums.data() + 500, columns, plain.sums[y].data());
-      fast.factors[y] = plain.factors[y] = random.uniform(0.2F, 0.3F) / columns.cell;
-    }
-    ASSERT_TRUE(fast.sums == plain.sums);
-    std::array<std::int8_t, kPatchSide * kPatchSide> levels, plain_levels;
-    standardise_cells(fast, -32, 0.06F, levels.data());
-    standardise_cells_plain(plain, -32, 0.06F, plain_levels.data());
-    EXPECT_EQ(levels, plain_levels);
-  }
-}
-
-TEST_P(Kernels, StandardiseAsThePlainLoop) {
-  simulate::Random random(7);
-  std::vector<float> in(205), mean(205), scale(205);
-  for (auto* values : {&in, &mean, &scale})
-    for (float& value : *values) value = 3 * random.normal();
-  std::vector<std::int16_t> fast(205), plain(205);
-  standardise(in.data(), 205, mean.data(), scale.data(), 4, fast.data());
-  standardise_plain(in.data(), 205, mean.data(), scale.data(), 4, plain.data());
-  EXPECT_EQ(fast, plain);
 }
 
 TEST_P(Kernels, FindEdgesAsThePlainLoops) {

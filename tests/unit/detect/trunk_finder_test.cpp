@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <span>
 
 #include "painted_panorama.h"
 
@@ -50,6 +52,12 @@ TEST(TrunkFinder, ShowsATrunkInItsPatches) {
   EXPECT_LT(mean(dark.trunk, 13, 19), mean(dark.trunk, 0, 10) - 20);
   EXPECT_LT(mean(dark.trunk, 13, 19), mean(dark.trunk, 22, 32) - 20);
   EXPECT_LT(mean(dark.around, 15, 17), mean(dark.around, 18, 32) - 20);
+  // Its foot lies a width above the lower end.
+  const auto core = [&](int y) { return dark.trunk[y * TrunkPatches::kSide + 15]; };
+  const float rows = foot + 2 * half;  // that the patch shows
+  const int at_foot = static_cast<int>(foot / rows * TrunkPatches::kSide);
+  EXPECT_LT(core(at_foot - 3), -20);
+  EXPECT_GT(core(at_foot + 3), -20);
   shape.dark = false;
   EXPECT_GT(mean(finder.patches(shape).trunk, 13, 19), mean(finder.patches(shape).trunk, 0, 10));
 }
@@ -77,18 +85,64 @@ TEST(TrunkFinder, TakesMoreTimeTheFartherItSearches) {
   EXPECT_EQ(Effort::for_reach(100).candidates, far.candidates);
 }
 
-// However much is in doubt, only so much is looked at closely; and what is clear is not.
+// Trunks as grey as the ground under a camera's noise, of which most are in doubt: near by only so
+// many are looked at closely, and more where the search goes far.
 TEST(TrunkFinder, LooksCloselyAtWhatIsInDoubt) {
   PaintedPanorama panorama(full_panorama(1440, 0.4, 0.9, 1.0));
-  for (int i = 0; i < 24; ++i) panorama.plant({-3.0 + 0.25 * i, 2.5 + 0.2 * i, 0.3, 100 + i});
-  TrunkFinder finder(panorama.setup({{1, 40}, {0.1, 1.2}}));
-  int close = 0;
-  for (const Trunk& trunk : finder.find(panorama.view())) {
-    close += trunk.seen_closely;
-    EXPECT_TRUE(trunk.logit < 5 || !trunk.seen_closely) << trunk.logit;
+  for (int i = 0; i < 24; ++i) panorama.plant({-3.0 + 0.25 * i, 2.0 + 0.2 * i, 0.3, 110});
+  simulate::Random random(1);
+  for (std::uint8_t& pixel : panorama.pixels()) {
+    const float noisy = static_cast<float>(pixel) + 30 * random.normal();
+    pixel = static_cast<std::uint8_t>(std::clamp(noisy, 0.0F, 255.0F));
   }
-  EXPECT_GT(close, 0);
-  EXPECT_LE(close, finder.effort().close_looks);
+  struct Looks {
+    int close = 0, left_in_doubt = 0;
+  };
+  const auto looks = [&](const Search& search) {
+    TrunkFinder finder(panorama.setup(search));
+    Looks sum;
+    for (const Trunk& trunk : finder.find(panorama.view())) {
+      sum.close += trunk.seen_closely;
+      sum.left_in_doubt += !trunk.seen_closely && std::abs(trunk.logit) < 1.5F;
+    }
+    return sum;
+  };
+  const Looks near = looks({}), far = looks({{1, 40}, {0.1, 1.2}});
+  EXPECT_GT(near.close, 0);
+  EXPECT_LE(near.close, Effort::for_reach(8).close_looks);
+  EXPECT_GT(near.left_in_doubt, 0);
+  EXPECT_GT(far.close, Effort::for_reach(8).close_looks);
+  EXPECT_LT(far.left_in_doubt, near.left_in_doubt);
+}
+
+// The same trunk, on either side of the seam.
+TEST(TrunkFinder, ShowsTheSamePatchesAFullTurnAway) {
+  PaintedPanorama panorama(full_panorama(1440, 0.4, 0.9, 1.0));
+  panorama.plant({3.1, 1.2, 0.5, 60});
+  for (const Search& search : {Search{}, Search{{2, 8}, {0.2, 0.8}}}) {
+    TrunkFinder finder(panorama.setup(search));
+    finder.candidates(panorama.view());
+    const TrunkShape before{.foot = 220, .left = -50, .right = 50};
+    const TrunkShape after{.foot = 220, .left = 1390, .right = 1490};
+    EXPECT_EQ(finder.patches(before).trunk, finder.patches(after).trunk);
+    EXPECT_EQ(finder.patches(before).around, finder.patches(after).around);
+  }
+}
+
+// Cells of a patch are never wider than sums of 16 bits allow, however large the panorama: white
+// stays brighter than grey.
+TEST(TrunkFinder, ShowsWhatIsBrightAsBrightInLargePanoramas) {
+  PaintedPanorama panorama(full_panorama(5760, 0.4, 0.9, 1.0));
+  for (int row = 0; row < 60; ++row)
+    for (int x = 0; x < 5760; ++x) panorama.at(row, x) = 255;
+  TrunkFinder finder(panorama.setup());
+  finder.candidates(panorama.view());
+  const TrunkPatches patches =
+      finder.patches({.foot = 900, .left = 2000, .right = 2900, .dark = true});
+  for (const auto& patch : {patches.trunk, patches.around}) {
+    const auto top = std::span(patch).first(TrunkPatches::kSide);
+    EXPECT_GT(*std::min_element(top.begin(), top.end()), 10);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <hwy/highway.h>
+
+#include <cstdint>
+#include <string>
+
+namespace bole {
+
+/// Tests of kernels, run with one instruction set after the other.
+class EachTarget : public testing::TestWithParam<std::int64_t> {
+ protected:
+  EachTarget() { choose(GetParam()); }
+  ~EachTarget() override { choose(0); }
+
+ private:
+  static void choose(std::int64_t target) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+};
+
+inline auto each_target() { return testing::ValuesIn(hwy::SupportedAndGeneratedTargets()); }
+
+inline std::string target_name(const testing::TestParamInfo<std::int64_t>& target) {
+  return hwy::TargetName(target.param);
+}
+
+}  // namespace bole
