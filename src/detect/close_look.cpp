@@ -23,7 +23,7 @@ constexpr int kLast = kLastSide * kLastSide * kChannels[kConvolutions];
 constexpr int kSummary = 48;
 
 constexpr int kFeatures = TrunkFeatures::kCount;
-constexpr int kInputs = (kFeatures + 2 * kSummary + 1) / 2 * 2;  // pairs
+constexpr int kPairs = (w::kInputs + 1) / 2;
 static_assert(w::kInputs == kFeatures + 2 * kSummary && w::kLimit <= kMostInput,
               "train the networks anew");
 
@@ -155,12 +155,12 @@ Judgement judge_closely(const TrunkFeatures::Values& features, const TrunkPatche
   std::array<float, 2 * kSummary> summaries;
   summarise(patches.trunk, InWholeUnits<w::Trunk>::kLayers, summaries.data());
   summarise(patches.around, InWholeUnits<w::Around>::kLayers, summaries.data() + kSummary);
-  alignas(64) std::array<std::int16_t, kInputs> inputs;
+  alignas(64) std::array<std::int16_t, std::size_t{2} * kPairs> inputs;
+  inputs.back() = 0;
   standardise(features.data(), kFeatures, w::kMean, w::kScale, w::kLimit, inputs.data());
   quantise(summaries.data(), 2 * kSummary, inputs.data() + kFeatures);
-  if (kInputs > w::kInputs) inputs.back() = 0;
   std::array<float, w::kFirst> first;
-  hidden_layer(inputs.data(), 1, kInputs / 2, kToFirst.data(), w::kFirstBias.data(), w::kFirst,
+  hidden_layer(inputs.data(), 1, kPairs, kToFirst.data(), w::kFirstBias.data(), w::kFirst,
                first.data());
   return judgement_of(first, w::kToSecond, w::kSecondBias, kToOutput, w::kOutputBias);
 }

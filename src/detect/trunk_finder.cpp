@@ -37,9 +37,9 @@ TrunkFinder::TrunkFinder(const DetectorSetup& setup)
       focal_(setup.panorama.focal()),
       narrowest_(static_cast<float>(
           kNarrower * focal_ * angular_width(setup.search.diameter.low, setup.search.range.high))),
-      highest_foot_(
-          static_cast<float>(setup.panorama.horizon_row() + 0.5 +
-                             focal_ * setup.height / (kFarther * setup.search.range.high))),
+      highest_foot_(static_cast<float>(setup.panorama.row_of_tangent(ground_tangent(
+                                           kFarther * setup.search.range.high, setup.height)) +
+                                       0.5)),
       effort_(Effort::for_reach(setup.search.range.high)),
       bands_(setup, std::max(Templates::margin(setup), patch_reach(focal_))),
       templates_(setup, bands_, effort_.candidates),
@@ -84,13 +84,11 @@ bool TrunkFinder::glance(const TrunkShape& shape, const EdgeFit& fit,
 }
 
 TrunkPatches TrunkFinder::patches(const TrunkShape& shape) const {
+  // To where its middle lies within the panorama: half a turn from the middle at most.
+  const float shift = whole_turns(shape.centre() - 0.5F * static_cast<float>(columns_));
   TrunkShape within = shape;
-  if (wraps_) {
-    const auto turn = static_cast<float>(columns_);
-    const float shift = turn * std::floor(shape.centre() / turn);
-    within.left -= shift;
-    within.right -= shift;
-  }
+  within.left -= shift;
+  within.right -= shift;
   return read_patches(bands_, within, fitter_.first_band(shape.left, shape.right), focal_);
 }
 

@@ -22,6 +22,9 @@ struct Extent {
   float half = 0;             // columns to each side
 };
 
+// `scale`: how many times 1440 columns a turn has.
+float most_around(float scale) { return std::min(kMostAround * scale, kMostHalf); }
+
 TrunkPatches::Patch read_patch(const Bands& bands, const Extent& extent, bool dark) {
   PatchCells cells;
   const float rows = (extent.last - extent.first) / kSide;
@@ -51,7 +54,7 @@ TrunkPatches::Patch read_patch(const Bands& bands, const Extent& extent, bool da
 
 int patch_reach(double focal) {
   const float scale = static_cast<float>(focal) / kReferenceFocal;
-  return static_cast<int>(std::min(kMostAround * scale, kMostHalf) + kLean * scale) + 1;
+  return static_cast<int>(most_around(scale) + kLean * scale) + 1;
 }
 
 TrunkPatches read_patches(const Bands& bands, const TrunkShape& shape, int first_band,
@@ -66,12 +69,10 @@ TrunkPatches read_patches(const Bands& bands, const TrunkShape& shape, int first
                      .middle = shape.centre() + lean * (0.5F - foot),
                      .lean = lean,
                      .half = std::min(2 * width, kMostHalf)};
-  const Extent around{
-      .first = 0,
-      .last = static_cast<float>(bands.count()),
-      .middle = shape.centre(),
-      .half =
-          std::min(std::clamp(6 * width, kLeastAround * scale, kMostAround * scale), kMostHalf)};
+  const Extent around{.first = 0,
+                      .last = static_cast<float>(bands.count()),
+                      .middle = shape.centre(),
+                      .half = std::clamp(6 * width, kLeastAround * scale, most_around(scale))};
   return {.trunk = read_patch(bands, trunk, shape.dark),
           .around = read_patch(bands, around, shape.dark)};
 }

@@ -29,7 +29,6 @@ constexpr double kNear = 1.35;          // of what a trunk's shape may be off: n
 constexpr float kSecondLooks = 0.4F;    // share of them that is kept
 constexpr float kLeastDoubt = -5.5F, kMostDoubt = 4.5F;  // logit
 constexpr float kDoubtful = 0.2F, kClear = 0.02F;        // shares of them that are kept
-constexpr double kReferenceFocal = 1440 / 6.283185307;
 
 enum class Looks { first, second, close };
 
@@ -127,8 +126,7 @@ class Dump {
     finder_.refine(shape, fit);
     put(shape, fit, 1 / kSecondLooks);
     if (looks_ != Looks::close || !finder_.read(frame_.view(), shape, fit, features)) return;
-    judge(std::span(&features, 1), std::span(&judgement, 1));
-    put(corrected(shape, judgement, focal_), fit, 1 / kSecondLooks);
+    put(corrected(shape, judged(features), focal_), fit, 1 / kSecondLooks);
   }
 
   // Shapes close about a true trunk, as the second look meets them.
@@ -204,10 +202,15 @@ class Dump {
     std::fwrite(&patches, 1, sizeof patches, out_);
   }
 
-  static bool in_doubt(const TrunkFeatures::Values& features) {
+  static Judgement judged(const TrunkFeatures::Values& features) {
     Judgement judgement;
     judge(std::span(&features, 1), std::span(&judgement, 1));
-    return judgement.logit > kLeastDoubt && judgement.logit < kMostDoubt;
+    return judgement;
+  }
+
+  static bool in_doubt(const TrunkFeatures::Values& features) {
+    const float logit = judged(features).logit;
+    return logit > kLeastDoubt && logit < kMostDoubt;
   }
 
   // Of the foot, or of where the camera's sight of the trunk ends.

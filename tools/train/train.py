@@ -51,6 +51,7 @@ LEAST_ROW_SPREAD = constant("kLeastSpread", "src/detect/row_contrasts.cpp")
 LIMIT = 4.0  # of a standardised feature
 MOST_WEIGHT = 8  # of a sample: it stands for others that were not kept
 SHIFTS_WEIGHT = 0.12  # of their likelihood beside the logit's
+LOG_SIGMAS, LARGE_ERROR = (-4.5, 3), 3.0  # of the shifts; the error in sigmas
 BRIGHT_WEIGHT = 2.5  # of bright trunks: they are the fewer, but as good to run into
 EPOCHS, LAST_EPOCHS, BATCH, RATE, DECAY, NOISE = 14, 2, 2048, 3e-3, 1e-4, 0.1
 
@@ -115,9 +116,9 @@ def loss(layers, z, head):
     label, shifts, weight = head[:, 1], head[:, 2:5], head[:, 5]
     logit = optax.sigmoid_binary_cross_entropy(out[:, 0], label)
     # The shifts' negative log likelihood; large errors pull like a Laplacian's.
-    log_sigma = out[:, 4:].clip(-4.5, 3)
+    log_sigma = out[:, 4:].clip(*LOG_SIGMAS)
     error = (out[:, 1:4] - shifts) * jnp.exp(-log_sigma)
-    shift = (optax.huber_loss(error, delta=3.0) + log_sigma).sum(1)
+    shift = (optax.huber_loss(error, delta=LARGE_ERROR) + log_sigma).sum(1)
     return (weight * (logit + SHIFTS_WEIGHT * (label == 1) * shift)).mean()
 
 
@@ -134,6 +135,10 @@ class Standardised:
         parts = np.array_split(x, 1 + len(x) // 65536)
         return np.concatenate([((part - self.mean) * self.scale).clip(-LIMIT, LIMIT)
                                .astype(np.float16) for part in parts])
+
+
+def of_held_out_frames(head):
+    return head[:, 0].astype(int) % 8 == 0
 
 
 def weighed(head, x):
@@ -220,7 +225,7 @@ constexpr float kScale[kInputs] = {{{numbers(standardised.scale)}}};
 def fit(head, x, shown, mirror, hidden, path):
     """Trains a network on what it is `shown` of the features, says how good it is, writes its
     weights."""
-    held_out = head[:, 0].astype(int) % 8 == 0
+    held_out = of_held_out_frames(head)
     tested = head[held_out], x[held_out]
     head, x = head[~held_out], x[~held_out]
     standardised = Standardised(shown(x[::8]), mirror)

@@ -86,9 +86,10 @@ def loss(out, head):
     """As in train.py."""
     trunk, shifts, weight = head[:, 1], head[:, 2:5], head[:, 5]
     logit = functional.binary_cross_entropy_with_logits(out[:, 0], trunk, reduction="none")
-    log_sigma = out[:, 4:].clamp(-4.5, 3)
+    log_sigma = out[:, 4:].clamp(*train.LOG_SIGMAS)
     error = (out[:, 1:4] - shifts) * torch.exp(-log_sigma)
-    far = functional.huber_loss(error, torch.zeros_like(error), reduction="none", delta=3.0)
+    far = functional.huber_loss(error, torch.zeros_like(error), reduction="none",
+                                delta=train.LARGE_ERROR)
     shift = (far + log_sigma).sum(1)
     return (weight * (logit + train.SHIFTS_WEIGHT * trunk * shift)).mean()
 
@@ -199,7 +200,7 @@ def main():
         write(CloseLook(), train.Standardised(nothing, train.mirror()), path)
         return
     samples = Samples(arguments.dumps)
-    held_out = samples.head[:, 0].astype(int) % 8 == 0
+    held_out = train.of_held_out_frames(samples.head)
     shown = np.flatnonzero(~held_out)
     standardised = train.Standardised(samples.features[shown[::8]], train.mirror())
     net = fit(samples, shown, standardised)

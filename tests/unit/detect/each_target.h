@@ -6,19 +6,15 @@
 #include <cstdint>
 #include <string>
 
+#include "support/choose_target.h"
+
 namespace bole {
 
 /// Tests of kernels, run with one instruction set after the other.
 class EachTarget : public testing::TestWithParam<std::int64_t> {
  protected:
-  EachTarget() { choose(GetParam()); }
-  ~EachTarget() override { choose(0); }
-
- private:
-  static void choose(std::int64_t target) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
+  EachTarget() { choose_target(GetParam()); }
+  ~EachTarget() override { choose_target(0); }
 };
 
 inline auto each_target() { return testing::ValuesIn(hwy::SupportedAndGeneratedTargets()); }
