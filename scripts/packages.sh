@@ -1,7 +1,7 @@
 # Debian packages that building and testing need; sourced by demo, test and .ci/run.
 # shellcheck shell=bash
 build_packages=(
-  build-essential ccache cmake file git ninja-build pkg-config
+  build-essential ccache cmake file git help2man ninja-build pkg-config
   libbenchmark-dev libcamera-dev libcli11-dev libgmock-dev libgtest-dev libhwy-dev liblcm-bin liblcm-dev
   libopencv-dev libpng-dev libspdlog-dev libsystemd-dev libtomlplusplus-dev libturbojpeg0-dev
   libyaml-cpp-dev nlohmann-json3-dev zlib1g-dev

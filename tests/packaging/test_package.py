@@ -1,6 +1,7 @@
 """The Debian packages: what they say of themselves, what they hold, and that it runs from where it is
 unpacked."""
 
+import gzip
 import json
 import shutil
 import subprocess
@@ -75,6 +76,14 @@ def test_files_are_readable_by_all_and_hold_no_debugging_symbols(root):
         assert ".debug_info" not in output("readelf", "-S", program)
     for path in root.rglob("*"):
         assert path.stat().st_mode & 0o444 == 0o444, path
+
+
+@pytest.mark.skipif(not shutil.which("help2man"), reason="no help2man")
+@pytest.mark.parametrize(("page", "option"), [("man8/boled.8.gz", "--source"),
+                                              ("man1/bolectl.1.gz", "eval")])
+def test_each_program_has_a_manual(root, page, option):
+    assert option in gzip.decompress((root / "usr/share/man" / page).read_bytes()).decode().replace(
+        "\\-", "-")
 
 
 def test_programs_and_plug_ins_run_from_where_they_are_unpacked(root, tmp_path):
