@@ -3,8 +3,8 @@
 //
 // usage: degrade_frames KIND TO_DIR IMAGE...
 //
-// KIND is blur, noise, darkness, over-exposure or fog. Writes PNG files of the same names, whatever
-// their endings say, to TO_DIR. The same images give the same files.
+// KIND is blur, noise, darkness, over-exposure, fog or half-resolution. Writes PNG files of the
+// same names, whatever their endings say, to TO_DIR. The same images give the same files.
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -50,6 +50,12 @@ const std::map<std::string, std::function<cv::Mat3b(const cv::Mat3b&)>> kKinds =
     {"over-exposure", [](const cv::Mat3b& picture) { return scaled(picture, 2, 0); }},
     // A veil of the same strength everywhere.
     {"fog", [](const cv::Mat3b& picture) { return with_noise(scaled(picture, 0.35, 130), 2); }},
+    {"half-resolution",
+     [](const cv::Mat3b& picture) {
+       cv::Mat3b result;
+       cv::resize(picture, result, {}, 0.5, 0.5, cv::INTER_AREA);
+       return result;
+     }},
 };
 
 }  // namespace
@@ -58,8 +64,10 @@ const std::map<std::string, std::function<cv::Mat3b(const cv::Mat3b&)>> kKinds =
 int main(int count, char** arguments) {
   const auto kind = count > 3 ? bole::kKinds.find(arguments[1]) : bole::kKinds.end();
   if (kind == bole::kKinds.end()) {
-    std::fputs("usage: degrade_frames blur|noise|darkness|over-exposure|fog TO_DIR IMAGE...\n",
-               stderr);
+    std::fputs(
+        "usage: degrade_frames blur|noise|darkness|over-exposure|fog|half-resolution TO_DIR "
+        "IMAGE...\n",
+        stderr);
     return 2;
   }
   try {
