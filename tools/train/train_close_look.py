@@ -5,9 +5,9 @@ usage: train_close_look.py --out src/detect [DUMP...]
 
 Without a dump it writes a network that knows nothing, to be built with. Each of the two patches
 goes through convolutions of 3 x 3 cells at every other cell to a summary; two hidden layers see
-both summaries and the features. Outputs, likelihood, weights of samples and the frames that are
-held out are those of train.py; a whole batch is shown mirrored, and the features' noise stays to the
-end. What the network says of the inputs of the detector's own test goes to the golden file of that.
+both summaries and the features. A whole batch is shown mirrored, and the features' noise stays to
+the end. What the network says of the inputs of the detector's own test goes to the golden file of
+that.
 """
 import argparse
 import pathlib
@@ -17,10 +17,13 @@ import torch
 from torch import nn
 from torch.nn import functional
 
-import train
+from detector_source import LEAK, ROOT, biases, constant, matrix, numbers
+from likelihood import OUTPUTS, loss, report
+from samples import (FEATURES, LIMIT, MIRRORED_HEAD, Standardised, load, mirror,
+                     of_held_out_frames, weighed)
 
-SIDE = int(train.constant("kSide", "src/detect/trunk_patches.h"))
-CELL_UNITS = train.constant("kUnits", "src/detect/trunk_patches.h")
+SIDE = int(constant("kSide", "src/detect/trunk_patches.h"))
+CELL_UNITS = constant("kUnits", "src/detect/trunk_patches.h")
 PATCHES = ("trunk", "around")
 CHANNELS = (1, 16, 16, 32, 48)
 LAYERS = ("First", "Second", "Third", "Fourth")
@@ -31,7 +34,7 @@ MOST_UNIT = 3.5  # what whole numbers leave room for
 
 
 def leaky(x):
-    return functional.leaky_relu(x, train.LEAK)
+    return functional.leaky_relu(x, LEAK)
 
 
 class PatchSummary(nn.Module):
@@ -54,9 +57,9 @@ class CloseLook(nn.Module):
     def __init__(self):
         super().__init__()
         self.patches = nn.ModuleList(PatchSummary() for _ in PATCHES)
-        self.first = nn.Linear(train.FEATURES + len(PATCHES) * SUMMARY, FIRST)
+        self.first = nn.Linear(FEATURES + len(PATCHES) * SUMMARY, FIRST)
         self.second = nn.Linear(FIRST, SECOND)
-        self.output = nn.Linear(SECOND, train.OUTPUTS)
+        self.output = nn.Linear(SECOND, OUTPUTS)
 
     def forward(self, features, patches):
         seen = [net(patches[:, k:k + 1]) for k, net in enumerate(self.patches)]
@@ -65,16 +68,7 @@ class CloseLook(nn.Module):
 
 class Samples:
     def __init__(self, paths):
-        floats = train.HEAD + train.FEATURES
-        size = 4 * floats + len(PATCHES) * SIDE ** 2
-        heads, features, patches = [], [], []
-        for path in paths:
-            rows = np.memmap(path, np.uint8, "r").reshape(-1, size)
-            numbers = np.ascontiguousarray(rows[:, :4 * floats]).view(np.float32)
-            heads.append(numbers[:, :train.HEAD].copy())
-            features.append(numbers[:, train.HEAD:].astype(np.float16))
-            patches.append(np.ascontiguousarray(rows[:, 4 * floats:]).view(np.int8))
-        self.head, self.features, self.patches = map(np.concatenate, (heads, features, patches))
+        self.head, self.features, self.patches = load(paths, len(PATCHES) * SIDE ** 2)
 
     def batch(self, chosen, standardised):
         features = torch.from_numpy(standardised(self.features[chosen]).astype(np.float32))
@@ -82,22 +76,10 @@ class Samples:
         return features, patches.view(-1, len(PATCHES), SIDE, SIDE)
 
 
-def loss(out, head):
-    """As in train.py."""
-    trunk, shifts, weight = head[:, 1], head[:, 2:5], head[:, 5]
-    logit = functional.binary_cross_entropy_with_logits(out[:, 0], trunk, reduction="none")
-    log_sigma = out[:, 4:].clamp(*train.LOG_SIGMAS)
-    error = (out[:, 1:4] - shifts) * torch.exp(-log_sigma)
-    far = functional.huber_loss(error, torch.zeros_like(error), reduction="none",
-                                delta=train.LARGE_ERROR)
-    shift = (far + log_sigma).sum(1)
-    return (weight * (logit + train.SHIFTS_WEIGHT * trunk * shift)).mean()
-
-
 def fit(samples, shown, standardised):
-    source, sign = train.mirror()
-    head = train.weighed(samples.head[shown], samples.features[shown])
-    mirrored = torch.from_numpy(train.MIRRORED_HEAD)
+    source, sign = mirror()
+    head = weighed(samples.head[shown], samples.features[shown])
+    mirrored = torch.from_numpy(MIRRORED_HEAD)
     net = CloseLook()
     steps = len(shown) // BATCH
     optimiser = torch.optim.AdamW(net.parameters(), RATE, weight_decay=DECAY)
@@ -121,10 +103,9 @@ def fit(samples, shown, standardised):
 
 
 @torch.no_grad()
-def report(net, samples, shown, standardised):
-    out = np.concatenate([net(*samples.batch(part, standardised)).numpy()
-                          for part in np.array_split(shown, 1 + len(shown) // 4096)])
-    train.report_outputs(out, samples.head[shown])
+def outputs(net, samples, shown, standardised):
+    return np.concatenate([net(*samples.batch(part, standardised)).numpy()
+                           for part in np.array_split(shown, 1 + len(shown) // 4096)])
 
 
 @torch.no_grad()
@@ -134,7 +115,7 @@ def even_out(net, patches):
     for k, summary in enumerate(net.patches):
         x = patches[:, k:k + 1]
         layers = summary.layers()
-        inputs = slice(train.FEATURES + k * SUMMARY, train.FEATURES + (k + 1) * SUMMARY)
+        inputs = slice(FEATURES + k * SUMMARY, FEATURES + (k + 1) * SUMMARY)
         following = [layer.weight for layer in layers[1:]] + [net.first.weight[:, inputs]]
         for layer, after in zip(layers, following):
             x = leaky(layer(x.flatten(1) if isinstance(layer, nn.Linear) else x))
@@ -150,15 +131,15 @@ def write(net, standardised, path):
         out.write(f"""// Written by tools/train/train_close_look.py.
 namespace {path.stem} {{
 constexpr int kInputs = {net.first.in_features}, kFirst = {FIRST}, kSecond = {SECOND}, \
-kOutputs = {train.OUTPUTS};
-constexpr float kLimit = {train.LIMIT}F;
-constexpr float kMean[] = {{{train.numbers(standardised.mean)}}};
-constexpr float kScale[] = {{{train.numbers(standardised.scale)}}};
+kOutputs = {OUTPUTS};
+constexpr float kLimit = {LIMIT}F;
+constexpr float kMean[] = {{{numbers(standardised.mean)}}};
+constexpr float kScale[] = {{{numbers(standardised.scale)}}};
 """)
 
         def layer(name, weights, bias, indent=""):
-            out.write(indent + train.bias(name, bias.detach().numpy()))
-            out.write(indent + train.matrix(f"kTo{name}", weights.detach().numpy()))
+            out.write(indent + biases(name, bias.detach().numpy()))
+            out.write(indent + matrix(f"kTo{name}", weights.detach().numpy()))
 
         for name, summary in zip(PATCHES, net.patches):
             out.write(f"struct {name.title()} {{\n")
@@ -177,7 +158,7 @@ constexpr float kScale[] = {{{train.numbers(standardised.scale)}}};
 @torch.no_grad()
 def write_golden(net, standardised, path):
     """Of the features and patches of some_features() and some_patches() in network_test.cpp."""
-    i = np.arange(train.FEATURES)
+    i = np.arange(FEATURES)
     features = np.sin(np.float32(0.37) * (i * i % 101).astype(np.float32))[None]
     i = np.arange(SIDE ** 2)
     patches = np.stack([i * i % 101 - 50, i * i % 67 - 33]).reshape(1, len(PATCHES), SIDE, SIDE)
@@ -196,18 +177,18 @@ def main():
     torch.manual_seed(0)
     path = arguments.out / "close_look_weights.inc"
     if not arguments.dumps:
-        nothing = np.zeros((1, train.FEATURES), np.float32)
-        write(CloseLook(), train.Standardised(nothing, train.mirror()), path)
+        nothing = np.zeros((1, FEATURES), np.float32)
+        write(CloseLook(), Standardised(nothing, mirror()), path)
         return
     samples = Samples(arguments.dumps)
-    held_out = train.of_held_out_frames(samples.head)
-    shown = np.flatnonzero(~held_out)
-    standardised = train.Standardised(samples.features[shown[::8]], train.mirror())
+    held_out = of_held_out_frames(samples.head)
+    shown, tested = np.flatnonzero(~held_out), np.flatnonzero(held_out)
+    standardised = Standardised(samples.features[shown[::8]], mirror())
     net = fit(samples, shown, standardised)
-    report(net, samples, np.flatnonzero(held_out), standardised)
+    report(outputs(net, samples, tested, standardised), samples.head[tested])
     even_out(net, samples.batch(shown[::200], standardised)[1])
     write(net, standardised, path)
-    write_golden(net, standardised, train.ROOT / "tests/golden/detect/close_look.bin")
+    write_golden(net, standardised, ROOT / "tests/golden/detect/close_look.bin")
 
 
 if __name__ == "__main__":
