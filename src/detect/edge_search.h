@@ -8,8 +8,8 @@ namespace bole {
 struct EdgeSearch {
   static constexpr int kColumns = 64;    ///< that are looked at
   static constexpr int kPlaces = 32;     ///< at which a line may stand: the middle ones
-  static constexpr int kSlopes = 9;      ///< the middle one is upright
-  static constexpr int kSlopeStep = 15;  ///< thousandths of a column a row, from slope to slope
+  static constexpr int kSlopes = 11;     ///< the middle one is upright
+  static constexpr int kSlopeStep = 20;  ///< thousandths of a column a row, from slope to slope
 
   int first_column = 0;  ///< of the kColumns
   int reach = 0;         ///< at most kPlaces / 2: places left and right of the middle one

@@ -11,7 +11,7 @@ constexpr int kSide = TrunkPatches::kSide;
 static_assert(kSide == kPatchSide);
 constexpr float kLeastAround = 40, kMostAround = 600;  // columns to each side, of 1440 a turn
 constexpr float kMostHalf = 0.5F * kSide * Bands::kMostColumns;  // of the cells of a patch
-constexpr float kLean = 64;                                      // columns that a trunk may lean by
+constexpr float kLean = 80;                                      // columns that a trunk may lean by
 constexpr float kLeastSpread = 0.06F;                            // of log brightness
 
 // What of the panorama a patch shows.

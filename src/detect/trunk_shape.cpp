@@ -14,6 +14,7 @@ constexpr float kContrast = 0.22F * Bands::kScale;
 constexpr float kStrongContrast = 1.2F * Bands::kScale;
 constexpr float kLeastSum = 1.0F;    // of the contrast above another foot, in full bands
 constexpr float kFootReach = 6;      // rows: the network finds a foot that is this near
+constexpr float kMostLean = 0.15F;   // slope of an edge
 constexpr float kMostTaper = 0.05F;  // difference of the edges' slopes
 constexpr int kLevelFeet = 3;
 constexpr float kFall = 0.4F;  // by how much it falls below it
@@ -133,7 +134,7 @@ std::array<float, 2> EdgeFitter::place(const EdgeBands& bands, std::array<EdgeLi
   for (const int e : {0, 1}) {
     if (places[e].found < 4) {
       scatter[e] = 3;
-    } else if (std::abs(fitted[e].slope) < 0.12F &&
+    } else if (std::abs(fitted[e].slope) < kMostLean &&
                std::abs(fitted[e].column - lines[e].column) < 6) {
       lines[e] = fitted[e];
     }
