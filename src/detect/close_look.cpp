@@ -17,7 +17,7 @@ namespace w = close_look_weights;
 
 constexpr int kSide = TrunkPatches::kSide;
 constexpr int kConvolutions = 4;  // of 3 x 3 cells, at every other cell
-constexpr int kChannels[kConvolutions + 1] = {1, 16, 16, 32, 48};
+constexpr int kChannels[kConvolutions + 1] = {1, 16, 32, 48, 64};
 constexpr int kLastSide = kSide >> kConvolutions;
 constexpr int kLast = kLastSide * kLastSide * kChannels[kConvolutions];
 constexpr int kSummary = 48;

@@ -24,9 +24,9 @@ Effort Effort::for_reach(double range) {
   constexpr double kShort = 8, kLong = 40;  // metres
   const double far = std::clamp((range - kShort) / (kLong - kShort), 0.0, 1.0);
   const auto between = [far](double low, double high) { return low + far * (high - low); };
-  return {.candidates = static_cast<int>(between(210, 1100)),
-          .close_looks = static_cast<int>(between(5, 150)),
-          .worth_other_feet = static_cast<float>(between(-5, -6)),
+  return {.candidates = static_cast<int>(between(190, 2000)),
+          .close_looks = static_cast<int>(between(5, 200)),
+          .worth_other_feet = static_cast<float>(between(-5, -7.5)),
           .worth_a_second_look = static_cast<float>(between(-3, -5)),
           .doubt = static_cast<float>(between(2, 3.5))};
 }

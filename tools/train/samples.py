@@ -27,14 +27,21 @@ BRIGHT_WEIGHT = 2.5  # of bright trunks: they are the fewer, but as good to run 
 def load(paths, patch_bytes=0):
     """The heads, features and patches of all samples; each has so many bytes of patches."""
     float_bytes = 4 * (HEAD + FEATURES)
-    heads, features, patches = [], [], []
-    for path in paths:
-        rows = np.memmap(path, np.uint8, "r").reshape(-1, float_bytes + patch_bytes)
-        floats = np.ascontiguousarray(rows[:, :float_bytes]).view(np.float32)
-        heads.append(floats[:, :HEAD].copy())
-        features.append(floats[:, HEAD:].astype(np.float16))  # memory is what runs out
-        patches.append(np.ascontiguousarray(rows[:, float_bytes:]).view(np.int8))
-    return np.concatenate(heads), np.concatenate(features), np.concatenate(patches)
+    dumps = [np.memmap(path, np.uint8, "r").reshape(-1, float_bytes + patch_bytes)
+             for path in paths]
+    count = sum(map(len, dumps))
+    # Memory is what runs out: halves will do for the features, and all stands there but once.
+    head, features, patches = (np.empty((count, width), kind) for width, kind in (
+        (HEAD, np.float32), (FEATURES, np.float16), (patch_bytes, np.int8)))
+    first = 0
+    for dump in dumps:
+        for rows in np.array_split(dump, 1 + len(dump) // 65536):
+            part = slice(first, first + len(rows))
+            floats = np.ascontiguousarray(rows[:, :float_bytes]).view(np.float32)
+            head[part], features[part] = np.split(floats, [HEAD], 1)
+            patches[part] = rows[:, float_bytes:].view(np.int8)
+            first = part.stop
+    return head, features, patches
 
 
 def of_held_out_frames(head):

@@ -5,9 +5,9 @@ usage: train_close_look.py --out src/detect [DUMP...]
 
 Without a dump it writes a network that knows nothing, to be built with. Each of the two patches
 goes through convolutions of 3 x 3 cells at every other cell to a summary; two hidden layers see
-both summaries and the features. A whole batch is shown mirrored, and the features' noise stays to
-the end. What the network says of the inputs of the detector's own test goes to the golden file of
-that.
+both summaries and the features. A whole batch is shown mirrored, the patches in disguise, some
+without features, and the features' noise stays to the end. What the network says of the inputs of
+the detector's own test goes to the golden file of that.
 """
 import argparse
 import pathlib
@@ -18,6 +18,7 @@ from torch import nn
 from torch.nn import functional
 
 from detector_source import LEAK, ROOT, biases, constant, matrix, numbers
+from disguise import disguised
 from likelihood import OUTPUTS, loss, report
 from samples import (FEATURES, LIMIT, MIRRORED_HEAD, Standardised, load, mirror,
                      of_held_out_frames, weighed)
@@ -25,12 +26,15 @@ from samples import (FEATURES, LIMIT, MIRRORED_HEAD, Standardised, load, mirror,
 SIDE = int(constant("kSide", "src/detect/trunk_patches.h"))
 CELL_UNITS = constant("kUnits", "src/detect/trunk_patches.h")
 PATCHES = ("trunk", "around")
-CHANNELS = (1, 16, 16, 32, 48)
+CHANNELS = (1, 16, 32, 48, 64)
 LAYERS = ("First", "Second", "Third", "Fourth")
 SUMMARY, FIRST, SECOND = 48, 96, 48
 LAST_SIDE = SIDE // 2 ** (len(CHANNELS) - 1)
-EPOCHS, BATCH, RATE, DECAY, NOISE = 12, 1024, 3e-3, 1e-4, 0.1
-MOST_UNIT = 3.5  # what whole numbers leave room for
+EPOCHS, BATCH, RATE, DECAY, NOISE = 20, 1024, 3e-3, 1e-2, 0.1
+WITHOUT_FEATURES = 0.3  # share of the samples
+# What whole numbers leave room for: of a unit, and of the sum of a unit's weights.
+MOST_UNIT = 3.5
+MOST_WEIGHTS = 0.99 * constant("kMostWeightsOfUnit", "src/detect/dense_layer.h")
 
 
 def leaky(x):
@@ -94,8 +98,11 @@ def fit(samples, shown, standardised):
                 features = features[:, source] * torch.from_numpy(sign)
                 patches, truth = patches.flip(3), truth * mirrored
             features += NOISE * torch.randn_like(features)
+            features *= torch.rand(len(features), 1) > WITHOUT_FEATURES
             optimiser.zero_grad()
-            loss(net(features, patches), truth).backward()
+            with torch.autocast("cpu", torch.bfloat16):  # half the time
+                out = net(features, disguised(patches))
+            loss(out.float(), truth).backward()
             optimiser.step()
             schedule.step()
         print(f"round {epoch + 1} of {EPOCHS}", flush=True)
@@ -110,8 +117,8 @@ def outputs(net, samples, shown, standardised):
 
 @torch.no_grad()
 def even_out(net, patches):
-    """Makes all units fit into whole numbers: leaky units keep their shape when they are scaled, so
-    what one layer is divided by the next is multiplied by."""
+    """Makes all units and weights fit into whole numbers: leaky units keep their shape when they are
+    scaled, so what one layer is divided by the next is multiplied by."""
     for k, summary in enumerate(net.patches):
         x = patches[:, k:k + 1]
         layers = summary.layers()
@@ -124,6 +131,10 @@ def even_out(net, patches):
             layer.bias *= share
             x *= share
             after /= share
+    share = (MOST_WEIGHTS / net.first.weight.abs().sum(1)).clamp(max=1)
+    net.first.weight *= share[:, None]
+    net.first.bias *= share
+    net.second.weight /= share
 
 
 def write(net, standardised, path):
