@@ -23,7 +23,7 @@ float probability(double logit) { return static_cast<float>(1 / (1 + std::exp(-l
 // trees are seen, what looks a little like one is one more often than elsewhere; `seen` is how many
 // there probably are.
 float calibrated(double score, double seen) {
-  constexpr double kSlope = 0.88, kShift = 0.02, kCrowd = 0.56, kFew = 7;
+  constexpr double kSlope = 0.94, kShift = 0.00, kCrowd = 0.56, kFew = 7;
   if (score >= 1) return 1;
   const double crowd = kCrowd * std::log(std::max(1.0, (seen + 1) / (kFew + 1)));
   return probability(kSlope * std::log(score / (1 - score)) + kShift + crowd);

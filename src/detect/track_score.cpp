@@ -6,7 +6,7 @@
 namespace bole {
 namespace {
 
-constexpr double kShift = -3.03, kNow = 0.30, kBest = 1.03, kSteady = 1.80, kKnown = 1.11;
+constexpr double kShift = -2.86, kNow = 0.29, kBest = 0.90, kSteady = 3.56, kKnown = 1.20;
 
 double log_odds(double probability) {
   constexpr double kCertain = 1e-4;
