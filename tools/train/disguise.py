@@ -13,25 +13,27 @@ LEAVES, MOST_LEAF, BRIGHTEST_LEAF = 0.4, 6, 2.0  # share of the patches, half it
 LEAST_SPREAD = 0.1
 
 
+def each(patches, low, high):
+    """A number for each of the patches, drawn anew."""
+    return low + (high - low) * torch.rand(*patches.shape[:2], 1, 1)
+
+
 def disguised(patches):
     """`patches`: pictures x patches x rows x columns, standardised; so is what comes back."""
-    def each(low, high):  # of the patches, drawn anew
-        return low + (high - low) * torch.rand(*patches.shape[:2], 1, 1)
-
     light = torch.randn(*patches.shape[:2], LIGHT_CELLS, LIGHT_CELLS)
     light = functional.interpolate(light, patches.shape[2:], mode="bilinear", align_corners=True)
-    patches = patches + each(0, MOST_LIGHT) * light
-    patches = patches + each(0, MOST_GRAIN) * torch.randn_like(patches)
-    patches = patches + each(-MOST_BEND, MOST_BEND) * patches.square()
-    patches = with_leaf(patches, each)
+    patches = patches + each(patches, 0, MOST_LIGHT) * light
+    patches = patches + each(patches, 0, MOST_GRAIN) * torch.randn_like(patches)
+    patches = patches + each(patches, -MOST_BEND, MOST_BEND) * patches.square()
+    patches = with_leaf(patches)
     spread, mean = torch.std_mean(patches, (2, 3), keepdim=True)
     return (patches - mean) / spread.clamp(min=LEAST_SPREAD)
 
 
-def with_leaf(patches, each):
+def with_leaf(patches):
     """A leaf, or a pool of light: within a box, all of one brightness."""
     rows, columns = (torch.arange(side) for side in patches.shape[2:])
-    beside = (columns - each(0, len(columns))).abs() < each(0, MOST_LEAF)
-    above = (rows.view(-1, 1) - each(0, len(rows))).abs() < each(0, MOST_LEAF)
-    hidden = beside & above & (each(0, 1) < LEAVES)
-    return torch.where(hidden, each(-BRIGHTEST_LEAF, BRIGHTEST_LEAF), patches)
+    beside = (columns - each(patches, 0, len(columns))).abs() < each(patches, 0, MOST_LEAF)
+    above = (rows.view(-1, 1) - each(patches, 0, len(rows))).abs() < each(patches, 0, MOST_LEAF)
+    hidden = beside & above & (each(patches, 0, 1) < LEAVES)
+    return torch.where(hidden, each(patches, -BRIGHTEST_LEAF, BRIGHTEST_LEAF), patches)
