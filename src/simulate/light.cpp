@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace bole::simulate {
 namespace {
@@ -23,10 +24,14 @@ Sunlight::Sunlight(const World& world) : world_(world) {
   const int last = static_cast<int>(strips_.size()) - 1;
   for (int i = 0; i < static_cast<int>(world.columns.size()); ++i) {
     const Column& c = world.columns[i];
-    const float foot = across(c.x, c.y), top = foot + c.height * across(c.lean_x, c.lean_y);
+    float least = std::numeric_limits<float>::max(), most = std::numeric_limits<float>::lowest();
+    for (const Point& p : c.axis_hull()) {
+      least = std::min(least, across(p.x, p.y));
+      most = std::max(most, across(p.x, p.y));
+    }
     const float wide = c.radius * (1 + c.flare) + 0.2F;
-    const int a = static_cast<int>((std::min(foot, top) - wide - low_) / kStrip);
-    const int b = static_cast<int>((std::max(foot, top) + wide - low_) / kStrip);
+    const int a = static_cast<int>((least - wide - low_) / kStrip);
+    const int b = static_cast<int>((most + wide - low_) / kStrip);
     for (int k = std::clamp(a, 0, last); k <= std::clamp(b, 0, last); ++k) strips_[k].push_back(i);
   }
 }
@@ -48,7 +53,7 @@ float Sunlight::at(float x, float y, float z, int self) const {
     const float towards = (c.x - x) * look.sun_x + (c.y - y) * look.sun_y;
     const float h = z + towards * look.sun_slope - c.z;
     if (i == self || towards <= 0 || h > c.height) continue;
-    const float dx = c.x + c.lean_x * h - x, dy = c.y + c.lean_y * h - y;
+    const float dx = c.axis_x(h) - x, dy = c.axis_y(h) - y;
     const float beside = std::abs(dy * look.sun_x - dx * look.sun_y);
     const float r = c.radius_at(std::max(h, 0.0F)), penumbra = 0.01F + 0.006F * towards;
     light *= smooth_step(r - penumbra, r + penumbra, beside);

@@ -38,7 +38,7 @@ void draw_light(Random& random, Look& look) {
   look.sun_slope = std::tan(random.uniform(0.3F, 1.2F));
   look.sun_strength = random.chance(0.25F) ? random.uniform(0, 0.4F) : random.uniform(0.8F, 3.5F);
   look.canopy = random.uniform(0.1F, 0.8F);
-  look.canopy_scale = random.uniform(0.25F, 1.2F);
+  look.canopy_scale = 0.25F * std::pow(10.0F, random.uniform(0, 1));
   const float sky = random.uniform(0.7F, 2.2F);
   look.sky_high =
       tinted(random, mix(Colour{0.7F, 0.9F, 1.4F}, Colour{1, 1, 1}, random.uniform(0, 1)),

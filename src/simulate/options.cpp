@@ -10,6 +10,7 @@ SimOptions varied() {
   o.frames_per_world = 1;
   o.trees_per_ha = {40, 1000};
   o.bright_share = {0.05F, 0.6F};
+  o.crooked_share = {0, 0.8F};
   o.slope = {0, 0.25F};
   o.undulation = {0, 0.15F};
   o.attitude_deg = {0, 2};

@@ -20,6 +20,7 @@ struct SimOptions {
   Span trees_per_ha{150, 600};       ///< 0: treeless, no distant stems either
   Span diameter{0.12F, 0.85F};       ///< metres, of trunks
   Span bright_share{0.05F, 0.4F};    ///< of trunks
+  Span crooked_share{0, 0.25F};      ///< of trunks: they lean and bend
   Span slope{0, 0.02F};              ///< rise over run of the ground as a whole
   Span undulation{0, 0.04F};         ///< metres, standard deviation of the ground about its slope
   Span attitude_deg{0.1F, 0.4F};     ///< standard deviation of the robot's unknown roll and pitch

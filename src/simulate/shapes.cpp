@@ -10,8 +10,8 @@ std::optional<Hit> meet_top(const Column& c, const Ray& ray) {
   const float top = c.z + c.height;
   if (ray.tangent >= 0 || top >= 0) return std::nullopt;
   const float way = top / ray.tangent;
-  const float dx = way * ray.dx - c.x - c.lean_x * c.height;
-  const float dy = way * ray.dy - c.y - c.lean_y * c.height;
+  const float dx = way * ray.dx - c.axis_x(c.height);
+  const float dy = way * ray.dy - c.axis_y(c.height);
   const float r = c.radius_at(c.height);
   if (dx * dx + dy * dy > r * r) return std::nullopt;
   return Hit{way, 0, 0, 1, 0, c.height};
@@ -27,7 +27,7 @@ std::optional<Hit> meet(const Column& c, const Ray& ray) {
   for (int step = 0;; ++step) {
     const float h = way * ray.tangent - c.z;
     const float at = std::clamp(h, -0.2F, c.height);
-    const float x = c.x + c.lean_x * at, y = c.y + c.lean_y * at, r = c.radius_at(at);
+    const float x = c.axis_x(at), y = c.axis_y(at), r = c.radius_at(at);
     const float along = x * ray.dx + y * ray.dy, across = x * ray.dy - y * ray.dx;
     // Most columns are passed well beside them; the rest of the search moves the axis by less.
     if (step == 0 && std::abs(across) > 1.6F * r + 0.02F) return std::nullopt;

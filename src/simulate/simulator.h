@@ -22,7 +22,7 @@ struct TreeTruth {
   double foot_visible = 0;    ///< the same for the lowest 0.3 m
   double base_elevation = 0;  ///< of the nearest point of the axis's foot circle, flare included
   double angular_width = 0;   ///< 2 asin(diameter / (2 range))
-  double lean_x = 0, lean_y = 0;  ///< shift of the axis a metre up
+  double lean_x = 0, lean_y = 0;  ///< shift of the axis within the first metre up
   bool bright = false;
 };
 

@@ -66,8 +66,15 @@ Colour Surfaces::column(const Column& c, int index, const Hit& hit, const Ray& r
     const float high = b.moss * 2 - 0.8F - 0.25F * hit.v;
     skin = mix(skin, look_.moss * 0.8F, smooth_step(-0.15F, 0.15F, grown * 0.7F + high));
   }
+  if (c.heap > 0) {
+    const float top = c.heap * (1 + 0.7F * noise(hit.nx * 4, hit.ny * 4, c.seed + 12));
+    const float grain =
+        fractal(at.x + at.z, at.y, look_.litter_scale, 3, 0.9F, at.footprint, world_.seed + 51);
+    skin = mix(look_.litter * std::exp(look_.litter_contrast * grain), skin,
+               smooth_step(top - 0.015F, top + 0.015F, hit.v));
+  }
   // Little light reaches the foot: ground and undergrowth keep it off.
-  const float open = 0.6F + 0.4F * smooth_step(-0.1F, 0.5F, hit.v);
+  const float open = 1 - c.shade * (1 - smooth_step(-0.1F, 0.5F, hit.v));
   return through_air(lit(skin, hit, at, index) * open, hit.way, ray);
 }
 

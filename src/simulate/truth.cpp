@@ -41,7 +41,7 @@ constexpr int kAcross = 6, kUp = 20;
 // One height of the silhouette, from edge to edge.
 void sample_row(const View& view, int column, float h, const ImageTest& image, Share& share) {
   const Column& c = view.column(column);
-  const float x = c.x + c.lean_x * h, y = c.y + c.lean_y * h, range = std::hypot(x, y);
+  const float x = c.axis_x(h), y = c.axis_y(h), range = std::hypot(x, y);
   const float r = c.radius_at(h);
   if (range <= r) return;
   const float bearing = std::atan2(y, x), half = std::asin(r / range);
@@ -77,8 +77,9 @@ TreeTruth measure_tree(const View& view, int column, const Pose& pose, double gr
   const double near = std::max(0.05, range - c.radius_at(0));
   t.base_elevation = std::atan2(c.z, near);
   const double cosine = std::cos(pose.heading), sine = std::sin(pose.heading);
-  t.lean_x = cosine * c.lean_x + sine * c.lean_y;
-  t.lean_y = cosine * c.lean_y - sine * c.lean_x;
+  const double lean_x = c.axis_x(1) - c.x, lean_y = c.axis_y(1) - c.y;
+  t.lean_x = cosine * lean_x + sine * lean_y;
+  t.lean_y = cosine * lean_y - sine * lean_x;
   t.bright = c.bright;
 
   const ImageTest image(camera, pose);

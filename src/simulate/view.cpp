@@ -81,14 +81,19 @@ void View::add_items() {
 
   for (int i = 0; i < static_cast<int>(columns_.size()); ++i) {
     const Column& c = columns_[i];
-    const float lean = std::hypot(c.lean_x, c.lean_y) * c.height;
-    const float body = c.radius_at(0) + lean, range = std::hypot(c.x, c.y);
+    const auto hull = c.axis_hull();
+    const auto farthest_from = [&](float x, float y) {
+      float way = 0;
+      for (const Point& p : hull) way = std::max(way, std::hypot(p.x - x, p.y - y));
+      return way + c.radius_at(0);
+    };
+    const float body = farthest_from(c.x, c.y), range = std::hypot(c.x, c.y);
     const float near = std::max(0.05F, range - body), far = range + body;
-    // Over its middle the lean shifts it to one side only.
+    // The lean shifts it to one side only.
+    const float x = 0.5F * (c.x + hull.back().x), y = 0.5F * (c.y + hull.back().y);
     add({near, lowest_tangent(c.z - 0.3F, near, far), highest_tangent(c.z + c.height, near, far), i,
          Kind::column},
-        c.x + 0.5F * c.lean_x * c.height, c.y + 0.5F * c.lean_y * c.height,
-        c.radius_at(0) + 0.5F * lean);
+        x, y, farthest_from(x, y));
   }
   const auto add_round = [&](Kind kind, int i, const auto& t, float reach, float low, float high) {
     const float range = std::hypot(t.x, t.y);

@@ -11,6 +11,10 @@ namespace {
 
 constexpr float kTurn = 6.2831853F;
 constexpr float kLane = 0.75F;  // metres to either side of the drive that stay clear
+// Streams of numbers: an addition draws from its own, so that the rest of a seed's world stays.
+constexpr std::uint32_t kWorldStream = 2, kStandStream = 3, kTreeStream = 4;
+constexpr float kCrookedLean = 0.12F, kStraightLean = 0.025F;  // standard deviations
+constexpr float kCrookedBend = 0.1F, kStraightBend = 0.02F;
 
 float draw(Random& random, Span span) { return random.uniform(span.low, span.high); }
 
@@ -18,7 +22,7 @@ float draw(Random& random, Span span) { return random.uniform(span.low, span.hig
 class Gardener {
  public:
   Gardener(const SimOptions& options, std::uint64_t seed, const std::vector<Pose>& drive)
-      : options_(options), seed_(seed), random_(seed, 2), drive_(drive) {
+      : options_(options), seed_(seed), random_(seed, kWorldStream), drive_(drive) {
     for (const Pose& pose : drive) {
       x0_ = std::min(x0_, static_cast<float>(pose.x) - kReach);
       x1_ = std::max(x1_, static_cast<float>(pose.x) + kReach);
@@ -30,6 +34,8 @@ class Gardener {
   World grow() {
     const bool treeless = options_.trees_per_ha.high <= 0;
     world_.seed = random_.bits();
+    Random stand(world_.seed, kStandStream);
+    crooked_ = draw(stand, options_.crooked_share);
     world_.look = draw_look(options_, random_, treeless);
     const float room = kReach;  // distant ground beyond the trees
     world_.terrain =
@@ -111,7 +117,8 @@ class Gardener {
     const float u = random_.uniform(0, 1);
     tree.radius = 0.5F * mix(options_.diameter.low, thickest, u * (0.4F + 0.6F * u));
     tree.taper = random_.uniform(0.004F, 0.03F);
-    const float lean = random_.chance(0.12F) ? 0.12F : 0.025F;
+    const bool crooked = random_.chance(crooked_);
+    const float lean = crooked ? kCrookedLean : kStraightLean;
     tree.lean_x = lean * random_.normal();
     tree.lean_y = lean * random_.normal();
     tree.height = random_.chance(0.06F) ? random_.uniform(1.5F, 5) : random_.uniform(9, 28);
@@ -122,7 +129,22 @@ class Gardener {
     tree.seed = random_.bits();
     tree.bright = bright;
     tree.tree = static_cast<int>(world_.columns.size());
+    weather(tree, crooked);
     return tree;
+  }
+
+  // What years of light, snow and litter made of it. A trunk that leans grows back upright, more or
+  // less.
+  static void weather(Column& tree, bool crooked) {
+    Random random(tree.seed, kTreeStream);
+    const float bend = crooked ? kCrookedBend : kStraightBend;
+    const float righted = random.uniform(0, 0.8F);
+    tree.bent = random.uniform(1, 6);
+    tree.bow_x = (bend * random.normal() - righted * tree.lean_x) / (2 * tree.bent);
+    tree.bow_y = (bend * random.normal() - righted * tree.lean_y) / (2 * tree.bent);
+    if (random.chance(0.25F)) tree.flare = random.uniform(0.5F, 1.2F);
+    tree.shade = random.uniform(0, 0.5F);
+    if (random.chance(0.3F)) tree.heap = random.uniform(0, 0.06F);
   }
 
   void cover_foot(const Column& tree) {
@@ -172,7 +194,7 @@ class Gardener {
     const float depth =
         0.5F * std::min(tree.height * random_.uniform(0.25F, 0.6F), tree.height - 4.5F);
     const float h = tree.height - depth;
-    add_bush(tree.x + tree.lean_x * h, tree.y + tree.lean_y * h, tree.z + h,
+    add_bush(tree.axis_x(h), tree.axis_y(h), tree.z + h,
              random_.uniform(0.5F, 1.3F) + 4 * tree.radius);
     Leaves& crown = world_.leaves.back();
     crown.height = 1.15F * depth;
@@ -327,11 +349,20 @@ class Gardener {
   Random random_;
   const std::vector<Pose>& drive_;
   World world_;
+  float crooked_ = 0;  // share of the trunks
   float x0_ = std::numeric_limits<float>::max(), y0_ = x0_;
   float x1_ = std::numeric_limits<float>::lowest(), y1_ = x1_;
 };
 
 }  // namespace
+
+std::array<Point, 4> Column::axis_hull() const {
+  const float tangents_meet = 0.5F * bent;
+  return {{{x, y},
+           {x + lean_x * tangents_meet, y + lean_y * tangents_meet},
+           {axis_x(bent), axis_y(bent)},
+           {axis_x(height), axis_y(height)}}};
+}
 
 World grow_world(const SimOptions& options, std::uint64_t seed, const std::vector<Pose>& drive) {
   return Gardener(options, seed, drive).grow();

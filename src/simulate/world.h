@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -16,6 +17,11 @@ inline Colour operator*(Colour c, float k) { return {c.r * k, c.g * k, c.b * k};
 inline Colour operator*(Colour a, Colour b) { return {a.r * b.r, a.g * b.g, a.b * b.b}; }
 inline Colour operator+(Colour a, Colour b) { return {a.r + b.r, a.g + b.g, a.b + b.b}; }
 inline Colour mix(Colour a, Colour b, float t) { return a * (1 - t) + b * t; }
+
+/// On the ground, metres.
+struct Point {
+  float x = 0, y = 0;
+};
 
 /// How the robot stands in the world: metres and radians; roll and pitch are what it rocks beyond
 /// what its camera.toml knows.
@@ -49,15 +55,20 @@ struct Bark {
   bool birch = false;  ///< dark cross-bars
 };
 
-/// A tapered, leaning round column: a tree's trunk, or a post, a stump, a leg. Radius at height h
-/// above its foot: radius (1 - taper (h - 0.5)) + radius flare / (1 + (h / flare_height)^2)^2.
+/// A tapered round column, leaning and bent in its lower part: a tree's trunk, or a post, a stump,
+/// a leg. Radius at height h above its foot: radius (1 - taper (h - 0.5)) + radius flare / (1 + (h
+/// / flare_height)^2)^2.
 struct Column {
   float x = 0, y = 0, z = 0;     ///< the axis at the ground
   float radius = 0.15F;          ///< half a metre up, the flare left out
   float taper = 0.01F;           ///< a metre
-  float lean_x = 0, lean_y = 0;  ///< shift of the axis a metre up
+  float lean_x = 0, lean_y = 0;  ///< shift of the axis a metre up, as it leaves the ground
+  float bow_x = 0, bow_y = 0;    ///< half the change of that a metre, up to the height `bent`
+  float bent = 1;                ///< straight above
   float height = 20;
   float flare = 0.2F, flare_height = 0.15F;
+  float shade = 0.4F;  ///< share of its light that the ground keeps off the foot
+  float heap = 0;      ///< metres up to which litter covers the foot
   Bark bark;
   std::uint32_t seed = 0;
   int tree = -1;  ///< its number in the truth; -1: not a tree
@@ -67,6 +78,18 @@ struct Column {
     const float q = h / flare_height;
     const float k = 1 / (1 + q * q);
     return radius * (1 - taper * (h - 0.5F) + flare * k * k);
+  }
+  /// Where the axis is at height h.
+  float axis_x(float h) const { return x + lean_x * h + bow_x * bow(h); }
+  float axis_y(float h) const { return y + lean_y * h + bow_y * bow(h); }
+  /// Corners of a polygon that holds the axis as seen from above: a parabola lies within the
+  /// triangle of its ends' tangents.
+  std::array<Point, 4> axis_hull() const;
+
+ private:
+  float bow(float h) const {
+    const float curved = h < bent ? h : bent;
+    return curved * (2 * h - curved);
   }
 };
 
