@@ -11,8 +11,8 @@ constexpr int kSide = TrunkPatches::kSide;
 static_assert(kSide == kPatchSide);
 constexpr float kLeastAround = 40, kMostAround = 600;  // columns to each side, of 1440 a turn
 constexpr float kMostHalf = 0.5F * kSide * Bands::kMostColumns;  // of the cells of a patch
-constexpr float kLean = 80;                                      // columns that a trunk may lean by
-constexpr float kLeastSpread = 0.06F;                            // of log brightness
+constexpr float kMostRows = 530;       // from the view's top to a foot, of 1440 columns a turn
+constexpr float kLeastSpread = 0.06F;  // of log brightness
 
 // What of the panorama a patch shows.
 struct Extent {
@@ -54,7 +54,7 @@ TrunkPatches::Patch read_patch(const Bands& bands, const Extent& extent, bool da
 
 int patch_reach(double focal) {
   const float scale = static_cast<float>(focal) / kReferenceFocal;
-  return static_cast<int>(most_around(scale) + kLean * scale) + 1;
+  return static_cast<int>(most_around(scale) + kMostLean * kMostRows * scale) + 1;
 }
 
 TrunkPatches read_patches(const Bands& bands, const TrunkShape& shape, int first_band,

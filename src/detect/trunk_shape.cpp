@@ -14,7 +14,6 @@ constexpr float kContrast = 0.22F * Bands::kScale;
 constexpr float kStrongContrast = 1.2F * Bands::kScale;
 constexpr float kLeastSum = 1.0F;    // of the contrast above another foot, in full bands
 constexpr float kFootReach = 6;      // rows: the network finds a foot that is this near
-constexpr float kMostLean = 0.15F;   // slope of an edge; the patches' margin allows for it
 constexpr float kMostTaper = 0.05F;  // difference of the edges' slopes
 constexpr int kLevelFeet = 3;
 constexpr float kFall = 0.4F;  // by how much it falls below it

@@ -12,6 +12,8 @@ namespace bole {
 
 /// Columns a radian of the panorama that limits in columns and rows are meant for.
 inline constexpr float kReferenceFocal = 1440 / 6.2831853F;
+/// Columns a row that an edge may lean by.
+inline constexpr float kMostLean = 0.15F;
 
 /// A trunk's outline in the panorama: two straight edges that end at the foot. Columns are
 /// continuous, 0 at the left border of column 0; rows likewise.
