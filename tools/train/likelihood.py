@@ -33,5 +33,5 @@ def report(out, head):
     left = np.median(abs(head[trunk, 2:5] - out[trunk, 1:4]), 0) * 1.48
     print(f"held out: {len(head)} samples, log loss {np.average(log_loss, weights=weight):.4f}, "
           f"recall {taken[trunk].mean():.3f}, "
-          f"precision {np.average(trunk[taken], weights=weight[taken]):.3f}, "
+          f"precision {(trunk * weight)[taken].sum() / max(1, weight[taken].sum()):.3f}, "
           f"left of the shifts {left.round(3)} of {head[trunk, 2:5].std(0).round(3)}")
