@@ -15,8 +15,11 @@ constexpr float kFarBetter = 3.0F;        // of two logits: the second look seld
 constexpr float kSure = 2.0F;             // logit
 constexpr float kExpectation = 2.0F;      // logit that rivals must be better by
 constexpr float kHopeless = -99;          // logit
-constexpr double kNarrower = 0.8;         // than any that is searched for, it may still be one
-constexpr double kFarther = 1.6;          // likewise, of where it stands on level ground
+// Bounds of a frame's time, which dense woods searched to 40 m reach.
+constexpr int kMostSecondLooks = 500;         // of candidates, and again of other feet
+constexpr std::size_t kMostOtherFeet = 2000;  // that are glanced at
+constexpr double kNarrower = 0.8;             // than any that is searched for, it may still be one
+constexpr double kFarther = 1.6;              // likewise, of where it stands on level ground
 
 }  // namespace
 
@@ -25,7 +28,7 @@ Effort Effort::for_reach(double range) {
   const double far = std::clamp((range - kShort) / (kLong - kShort), 0.0, 1.0);
   const auto between = [far](double low, double high) { return low + far * (high - low); };
   return {.candidates = static_cast<int>(between(190, 2000)),
-          .close_looks = static_cast<int>(between(5, 200)),
+          .close_looks = static_cast<int>(between(5, 150)),
           .worth_other_feet = static_cast<float>(between(-5, -7.5)),
           .worth_a_second_look = static_cast<float>(between(-3, -5)),
           .doubt = static_cast<float>(between(2, 3.5))};
@@ -46,7 +49,7 @@ TrunkFinder::TrunkFinder(const DetectorSetup& setup)
       fitter_(setup),
       reader_(setup) {
   sights_.reserve(effort_.candidates);
-  others_.reserve(EdgeFitter::kOtherFeet * sights_.capacity());
+  others_.reserve(std::min(EdgeFitter::kOtherFeet * sights_.capacity(), kMostOtherFeet));
   trunks_.reserve(std::size_t{3} * effort_.candidates);
   kept_.reserve(trunks_.capacity());
 }
@@ -169,13 +172,15 @@ void TrunkFinder::look_again(const PanoramaView& panorama, std::span<const Sight
     for (const Sight& sight : all) take(sight);
     count = 0;
   };
+  int left = kMostSecondLooks;
   for (const Sight& sight : sights) {
-    if (sight.judgement.logit < effort_.worth_a_second_look) break;
+    if (sight.judgement.logit < effort_.worth_a_second_look || left == 0) break;
     if (explained(sight.trunk.shape, sight.judgement.logit + kFarBetter)) continue;
     Trunk& trunk = (looks[count] = sight).trunk;
     trunk.shape = corrected(trunk.shape, sight.judgement, focal_);
     if (!readable(trunk.shape)) continue;
     refine(trunk.shape, trunk.fit);
+    --left;
     if (++count == kLooksAtOnce) judge_looks();
   }
   judge_looks();
