@@ -112,7 +112,9 @@ def hand_over(programs, raw_drive, log, types, lcm_url):
 
 
 def test_lists_are_handed_over_at_once(programs, raw_drive, tmp_path, types, lcm_url, report):
-    """The best of a few tries: others may hold the processors even against a realtime thread."""
+    """The best of a few tries: others may hold the processors even against a realtime thread. The
+    limit tells handing over from waiting, for a timer or for the next frame; how much faster it is
+    depends on the machine, and is reported."""
     log = tmp_path / "boled.log"
     for _ in range(3):
         buses = hand_over(programs, raw_drive, log, types, lcm_url)
@@ -121,8 +123,8 @@ def test_lists_are_handed_over_at_once(programs, raw_drive, tmp_path, types, lcm
             report(bus=bus.name, lists=bus.published, p50_us=bus.handover_p50_us,
                    p99_us=bus.handover_p99_us, histogram=histogram)
             assert sum(histogram) == bus.published > 0
-        if max(bus.handover_p99_us for bus in buses) <= 300:
+        if max(bus.handover_p99_us for bus in buses) <= 1000:
             return
     if "CAP_SYS_NICE" in log.read_text():
         pytest.skip("without the right to realtime priority it depends on who else runs")
-    pytest.fail("a bus' p99 was over 300 us in every try")
+    pytest.fail("a bus' p99 was over 1 ms in every try")
