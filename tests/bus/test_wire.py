@@ -1,5 +1,6 @@
 """What stands on the wire, and how soon: sizes of datagrams and of Zenoh's batches, hand-over times."""
 
+import math
 import re
 import shutil
 import socket
@@ -112,9 +113,9 @@ def hand_over(programs, raw_drive, log, types, lcm_url):
 
 
 def test_lists_are_handed_over_at_once(programs, raw_drive, tmp_path, types, lcm_url, report):
-    """The best of a few tries: others may hold the processors even against a realtime thread. The
-    limit tells handing over from waiting, for a timer or for the next frame; how much faster it is
-    depends on the machine, and is reported."""
+    """The best of a few tries: others may hold the processors even against a realtime thread. What
+    takes more than a millisecond waits for something; between the two it is the machine."""
+    best = math.inf
     log = tmp_path / "boled.log"
     for _ in range(3):
         buses = hand_over(programs, raw_drive, log, types, lcm_url)
@@ -123,8 +124,11 @@ def test_lists_are_handed_over_at_once(programs, raw_drive, tmp_path, types, lcm
             report(bus=bus.name, lists=bus.published, p50_us=bus.handover_p50_us,
                    p99_us=bus.handover_p99_us, histogram=histogram)
             assert sum(histogram) == bus.published > 0
-        if max(bus.handover_p99_us for bus in buses) <= 1000:
+        best = min(best, max(bus.handover_p99_us for bus in buses))
+        if best <= 300:
             return
     if "CAP_SYS_NICE" in log.read_text():
         pytest.skip("without the right to realtime priority it depends on who else runs")
+    if best <= 1000:
+        pytest.skip(f"p99 is {best:.0f} us, not 300: this machine is too slow to tell why")
     pytest.fail("a bus' p99 was over 1 ms in every try")
