@@ -15,11 +15,12 @@ constexpr float kFarBetter = 3.0F;        // of two logits: the second look seld
 constexpr float kSure = 2.0F;             // logit
 constexpr float kExpectation = 2.0F;      // logit that rivals must be better by
 constexpr float kHopeless = -99;          // logit
+constexpr double kNarrower = 0.8;         // than any that is searched for, it may still be one
+constexpr double kFarther = 1.6;          // likewise, of where it stands on level ground
+
 // Bounds of a frame's time, which dense woods searched to 40 m reach.
 constexpr int kMostSecondLooks = 500;         // of candidates, and again of other feet
 constexpr std::size_t kMostOtherFeet = 2000;  // that are glanced at
-constexpr double kNarrower = 0.8;             // than any that is searched for, it may still be one
-constexpr double kFarther = 1.6;              // likewise, of where it stands on level ground
 
 }  // namespace
 
