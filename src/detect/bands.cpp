@@ -49,6 +49,7 @@ void Bands::compute(const PanoramaView& panorama) {
     sum_four_rows(rows, width_, row_sum_.data());
     std::uint16_t* sums = sums_.data() + static_cast<std::size_t>(band) * pitch_ + margin_;
     unsigned total = 0;
+#pragma GCC unroll 4
     for (int x = 0; x < width_; ++x) {
       sums[x] = static_cast<std::uint16_t>(total);
       total += log_[row_sum_[x]];

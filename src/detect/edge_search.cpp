@@ -51,6 +51,9 @@ struct SearchBuffers {
   alignas(64) std::int16_t totals[EdgeSearch::kSlopes][EdgeSearch::kPlaces];
 };
 
+// What a response of the wrong sign counts above the horizon, in units of 2^-15.
+constexpr std::int16_t kWrongSign = -(1 << 15) * 11 / 16;
+
 // sign / flank, in units of 2^-15.
 std::int16_t share_of_flank(const EdgeBands& bands, const EdgeSearch& search) {
   const int share = ((1 << 15) + bands.flank / 2) / bands.flank;
@@ -86,7 +89,7 @@ HWY_INLINE void SumResponses(const EdgeBands& bands, const EdgeSearch& search, i
   const Values d;
   const hn::RebindToUnsigned<Values> du;
   const auto most = hn::Set(d, static_cast<std::int16_t>(search.limit * bands.flank));
-  const auto share = hn::Set(d, share_of_flank(bands, search)), wrong_sign = hn::Set(d, -11);
+  const auto share = hn::Set(d, share_of_flank(bands, search)), wrong_sign = hn::Set(d, kWrongSign);
   const std::uint16_t* at = bands.sums + search.first_column + column;
   auto sum = hn::Zero(d);
   hn::StoreU(sum, d, buffers.sums[0] + column);
@@ -95,7 +98,7 @@ HWY_INLINE void SumResponses(const EdgeBands& bands, const EdgeSearch& search, i
     const auto beside = hn::Add(hn::LoadU(du, at + bands.flank), hn::LoadU(du, at - bands.flank));
     const auto bend = hn::BitCast(d, hn::Sub(beside, hn::Add(middle, middle)));
     auto value = hn::MulFixedPoint15(hn::Min(hn::Max(bend, hn::Neg(most)), most), share);
-    if (band < bands.horizon) value = hn::Max(value, hn::ShiftRight<4>(hn::Mul(value, wrong_sign)));
+    if (band < bands.horizon) value = hn::Max(value, hn::MulFixedPoint15(value, wrong_sign));
     sum = hn::Add(sum, value);
     hn::StoreU(sum, d, buffers.sums[band + 1] + column);
   }
@@ -194,7 +197,7 @@ FoundEdge find_edge_plain(const EdgeBands& bands, const EdgeSearch& search) {
     const int most = search.limit * bands.flank;
     const int scaled = std::clamp<int>(bend, -most, most) * share_of_flank(bands, search);
     const int value = (scaled + (1 << 14)) >> 15;
-    return band < bands.horizon ? std::max(value, (-11 * value) >> 4) : value;
+    return band < bands.horizon ? std::max(value, (kWrongSign * value + (1 << 14)) >> 15) : value;
   };
   float highest = -1e9F;
   FoundEdge found;

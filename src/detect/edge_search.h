@@ -26,7 +26,7 @@ struct FoundEdge {
 /// 100 of it. In each band a line stands at the nearest whole column, at most (kColumns - kPlaces)
 /// / 2 from where it ends. A response is sign * bend / flank, cut off at the limit and rounded to
 /// the nearest; above the horizon one of the wrong sign counts 11 / 16 of one of the right sign,
-/// rounded down. Of equals the first slope, then the first place.
+/// rounded to the nearest. Of equals the first slope, then the first place.
 FoundEdge find_edge(const EdgeBands& bands, const EdgeSearch& search);
 FoundEdge find_edge_plain(const EdgeBands& bands, const EdgeSearch& search);
 

@@ -11,125 +11,204 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#ifndef BOLE_DETECT_TEMPLATE_KERNELS_ONCE
+#define BOLE_DETECT_TEMPLATE_KERNELS_ONCE
+namespace bole {
+namespace {
+
+// Of a response above the horizon, in units of 2^-15.
+constexpr int kRightSign = (1 << 15) * 5 / 8;
+constexpr int kEitherSign = (1 << 15) * 13 / 32;
+constexpr int kWrongSign = kEitherSign * 11 / 16;
+
+// A band counts for a trunk by what is above these. What has either sign has less against it.
+constexpr std::uint16_t kAgainst = kNoResponse + 30;
+constexpr std::uint16_t kAgainstAbove = kNoResponse + 24;
+constexpr int kNoEitherSign = kNoResponse + 1;
+
+}  // namespace
+}  // namespace bole
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace bole::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Sums = hn::ScalableTag<std::uint16_t>;
+#if HWY_TARGET == HWY_SCALAR  // a processor without vectors
 
-// Every kStep-th of the elements from `from` on.
-template <int kStep>
-HWY_INLINE hn::Vec<Sums> LoadEvery(const std::uint16_t* from) {
+void ThinSums(const std::uint16_t* sum, int step, int count, std::uint16_t* out) {
+  thin_sums_plain(sum, step, count, out);
+}
+
+void EdgeResponses(const std::uint16_t* sum, int flank, std::int16_t factor, int count,
+                   std::uint8_t* out) {
+  edge_responses_plain(sum, flank, factor, count, out);
+}
+
+void EdgeResponsesAbove(const std::uint16_t* sum, int flank, std::int16_t factor, int count,
+                        const ResponsesAbove& out) {
+  edge_responses_above_plain(sum, flank, factor, count, out);
+}
+
+void SumColumns(const ColumnSums& sums) { sum_columns_plain(sums); }
+
+#else
+
+using Bytes = hn::CappedTag<std::uint8_t, kTemplateChunk>;
+using Shorts = hn::Repartition<std::int16_t, Bytes>;
+using Sums = hn::RebindToUnsigned<Shorts>;
+using ByteValues = hn::Vec<Bytes>;
+using ShortValues = hn::Vec<Shorts>;
+constexpr int kBytes = static_cast<int>(hn::MaxLanes(Bytes()));
+constexpr int kShorts = kBytes / 2;
+
+void ThinSums(const std::uint16_t* sum, int step, int count, std::uint16_t* out) {
   const Sums d;
-  if constexpr (kStep == 1) {
-    return hn::LoadU(d, from);
-  } else if constexpr (kStep == 2) {
-    hn::Vec<Sums> even, odd;
-    hn::LoadInterleaved2(d, from, even, odd);
-    return even;
-  } else {
+  for (int i = 0; i < count; i += kShorts) {
+    const std::uint16_t* at = sum + i * step;
     hn::Vec<Sums> first, second, third, fourth;
-    hn::LoadInterleaved4(d, from, first, second, third, fourth);
-    return first;
+    if (step == 1) {
+      first = hn::LoadU(d, at);
+    } else if (step == 2) {
+      hn::LoadInterleaved2(d, at, first, second);
+    } else {
+      hn::LoadInterleaved4(d, at, first, second, third, fourth);
+    }
+    hn::StoreU(first, d, out + i);
   }
 }
 
-template <int kStep>
-void RespondEvery(const std::uint16_t* sum, int flank, std::uint16_t factor, int count,
-                  std::int16_t* out) {
+// Responses about 0.
+HWY_INLINE ShortValues Respond(const std::uint16_t* sum, int flank, ShortValues by) {
   const Sums d;
-  const hn::RebindToSigned<Sums> di;
+  const Shorts di;
+  const auto middle = hn::LoadU(d, sum);
+  const auto beside = hn::Add(hn::LoadU(d, sum + flank), hn::LoadU(d, sum - flank));
+  const auto bend = hn::BitCast(di, hn::Sub(beside, hn::Add(middle, middle)));
+  const auto full = hn::Set(di, std::int16_t{kFullResponse});
+  return hn::Min(hn::Max(hn::MulFixedPoint15(bend, by), hn::Neg(full)), full);
+}
+
+HWY_INLINE void StoreResponses(ShortValues low, ShortValues high, int none, std::uint8_t* out) {
+  const Bytes d;
+  const auto bytes = hn::ConcatEven(d, hn::BitCast(d, high), hn::BitCast(d, low));
+  hn::StoreU(hn::Add(bytes, hn::Set(d, static_cast<std::uint8_t>(none))), d, out);
+}
+
+void EdgeResponses(const std::uint16_t* sum, int flank, std::int16_t factor, int count,
+                   std::uint8_t* out) {
+  const auto by = hn::Set(Shorts(), factor);
+  for (int i = 0; i < count; i += kBytes) {
+    StoreResponses(Respond(sum + i, flank, by), Respond(sum + i + kShorts, flank, by), kNoResponse,
+                   out + i);
+  }
+}
+
+void EdgeResponsesAbove(const std::uint16_t* sum, int flank, std::int16_t factor, int count,
+                        const ResponsesAbove& out) {
+  const Shorts d;
   const auto by = hn::Set(d, factor);
-  const auto most = hn::Set(d, static_cast<std::uint16_t>(kFullResponse));
-  for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
-    const std::uint16_t* at = sum + i * kStep;
-    const auto middle = LoadEvery<kStep>(at);
-    const auto bend = hn::BitCast(di, hn::Sub(hn::Sub(LoadEvery<kStep>(at + flank), middle),
-                                              hn::Sub(middle, LoadEvery<kStep>(at - flank))));
-    const auto size = hn::Min(most, hn::MulHigh(hn::BitCast(d, hn::Abs(bend)), by));
-    const auto negative = hn::ShiftRight<15>(bend);
-    hn::StoreU(hn::Sub(hn::Xor(hn::BitCast(di, size), negative), negative), di, out + i);
+  const auto scaled = [](ShortValues value, int by_parts) {
+    return hn::MulFixedPoint15(value, hn::Set(Shorts(), static_cast<std::int16_t>(by_parts)));
+  };
+  for (int i = 0; i < count; i += kBytes) {
+    const auto low = Respond(sum + i, flank, by), high = Respond(sum + i + kShorts, flank, by);
+    StoreResponses(scaled(low, kRightSign), scaled(high, kRightSign), kNoResponse,
+                   out.right_sign + i);
+    for (const int sign : {1, -1}) {
+      const auto either = [&](ShortValues v) {
+        return hn::Max(scaled(v, sign * kEitherSign), scaled(v, -sign * kWrongSign));
+      };
+      StoreResponses(either(low), either(high), kNoEitherSign, out.either_sign[sign < 0] + i);
+    }
   }
 }
-
-void EdgeResponses(const std::uint16_t* sum, int flank, int step, std::uint16_t factor, int count,
-                   std::int16_t* out) {
-  if (step == 1) {
-    RespondEvery<1>(sum, flank, factor, count, out);
-  } else if (step == 2) {
-    RespondEvery<2>(sum, flank, factor, count, out);
-  } else {
-    RespondEvery<4>(sum, flank, factor, count, out);
-  }
-}
-
-using Narrow = hn::CappedTag<std::int16_t, kTemplateChunk>;
-using Values = hn::Vec<Narrow>;
 
 // The running and the highest sum of a vector of columns.
 struct Run {
-  Values sum, best, foot;
+  hn::Vec<Sums> sum, best, foot;
 
-  HWY_INLINE void Add(Values value, Values end, bool may_end) {
-    const Narrow d;
-    sum = hn::Max(hn::Add(sum, value), hn::Zero(d));
-    if (!may_end) return;
-    foot = hn::IfThenElse(hn::Gt(sum, best), end, foot);
+  HWY_INLINE void Add(hn::Vec<Sums> value, hn::Vec<Sums> against) {
+    sum = hn::SaturatedSub(hn::Add(sum, value), against);
+  }
+  HWY_INLINE void End(hn::Vec<Sums> here) {
+    foot = hn::IfThenElse(hn::Gt(sum, best), here, foot);
     best = hn::Max(best, sum);
   }
 };
 
-HWY_INLINE Values Joined(Values l, Values r, Values against) {
-  return hn::Sub(hn::Add(hn::ShiftRight<2>(hn::Add(l, r)), hn::ShiftRight<1>(hn::Min(l, r))),
-                 against);
+// The same of all columns of a vector of bytes.
+struct Runs {
+  Run even, odd;
+
+  HWY_INLINE void Add(ByteValues value, hn::Vec<Sums> against) {
+    const Sums d;
+    const auto pairs = hn::BitCast(d, value);
+    even.Add(hn::And(pairs, hn::Set(d, 0xff)), against);
+    odd.Add(hn::ShiftRight<8>(pairs), against);
+  }
+  HWY_INLINE void End(hn::Vec<Sums> here) {
+    even.End(here);
+    odd.End(here);
+  }
+  HWY_INLINE void Store(std::int16_t* evidence, std::int16_t* foot) const {
+    const Shorts d;
+    hn::StoreInterleaved2(hn::BitCast(d, even.best), hn::BitCast(d, odd.best), d, evidence);
+    hn::StoreInterleaved2(hn::BitCast(d, even.foot), hn::BitCast(d, odd.foot), d, foot);
+  }
+};
+
+HWY_INLINE ByteValues Joined(ByteValues l, ByteValues r) {
+  return hn::AverageRound(hn::AverageRound(l, r), hn::Min(l, r));
 }
 
-// value * factor / 2^shift, rounded down; a product by a constant would become many additions.
-template <int kFactor, int kShift>
-HWY_INLINE Values Scaled(Values value) {
-  constexpr int kHigh = kFactor * (1 << (16 - kShift));
-  static_assert(kHigh == static_cast<std::int16_t>(kHigh));
-  return hn::MulHigh(value, hn::Set(Narrow(), static_cast<std::int16_t>(kHigh)));
-}
-
-// The same where the sign counts for less.
-HWY_INLINE Values JoinedAbove(Values l, Values r) {
-  const Narrow d;
-  const auto soft = [&](Values v) { return hn::Max(v, Scaled<-11, 5>(hn::Add(v, v))); };
-  const auto any_sign = Joined(soft(l), soft(r), hn::Set(d, 35));
-  const auto right_sign = Joined(l, r, hn::Set(d, 24));
-  return hn::Max(Scaled<13, 5>(any_sign), Scaled<5, 4>(hn::Add(right_sign, right_sign)));
-}
+// Of falling brightness instead of rising.
+HWY_INLINE ByteValues Turned(ByteValues response) { return hn::Sub(hn::Zero(Bytes()), response); }
 
 void SumColumns(const ColumnSums& s) {
-  const Narrow d;
-  const auto zero = hn::Zero(d);
-  for (int start = 0; start < s.count; start += static_cast<int>(hn::Lanes(d))) {
-    Run dark{zero, zero, zero}, bright{zero, zero, zero};
-    for (int band = 0; band < s.last_foot; ++band) {
-      const std::int16_t* at = s.responses + static_cast<std::ptrdiff_t>(band) * s.pitch + start;
-      const auto left = hn::LoadU(d, at), right = hn::LoadU(d, at + s.across);
-      const auto end = hn::Set(d, static_cast<std::int16_t>(band + 1));
-      const bool may_end = band + 1 >= s.first_foot;
-      if (band < s.horizon) {
-        dark.Add(JoinedAbove(hn::Neg(left), right), end, may_end);
-        bright.Add(JoinedAbove(left, hn::Neg(right)), end, may_end);
-      } else {
-        const auto against = hn::Set(d, 19);
-        dark.Add(Joined(hn::Neg(left), right, against), end, may_end);
-        bright.Add(Joined(left, hn::Neg(right), against), end, may_end);
-      }
+  const Bytes d;
+  const auto zero = hn::Zero(Sums());
+  const Run none{zero, zero, zero};
+  const auto against_above = hn::Set(Sums(), kAgainstAbove), against = hn::Set(Sums(), kAgainst);
+  for (int start = 0; start < s.count; start += kBytes) {
+    Runs dark{none, none}, bright{none, none};
+    const auto end = [&](int band) {
+      if (band + 1 < s.first_foot) return;
+      const auto here = hn::Set(Sums(), static_cast<std::uint16_t>(band + 1));
+      dark.End(here);
+      bright.End(here);
+    };
+    std::ptrdiff_t at = start;
+    int band = 0;
+    for (; band < std::min(s.horizon, s.last_foot); ++band, at += s.pitch) {
+      const auto left = hn::LoadU(d, s.responses + at);
+      const auto right = hn::LoadU(d, s.responses + at + s.across);
+      const std::uint8_t *rising = s.either_sign[0] + at, *falling = s.either_sign[1] + at;
+      dark.Add(hn::Max(Joined(Turned(left), right),
+                       Joined(hn::LoadU(d, falling), hn::LoadU(d, rising + s.across))),
+               against_above);
+      bright.Add(hn::Max(Joined(left, Turned(right)),
+                         Joined(hn::LoadU(d, rising), hn::LoadU(d, falling + s.across))),
+                 against_above);
+      end(band);
     }
-    hn::StoreU(dark.best, d, s.evidence[0] + start);
-    hn::StoreU(dark.foot, d, s.foot[0] + start);
-    hn::StoreU(bright.best, d, s.evidence[1] + start);
-    hn::StoreU(bright.foot, d, s.foot[1] + start);
+    for (; band < s.last_foot; ++band, at += s.pitch) {
+      const auto left = hn::LoadU(d, s.responses + at);
+      const auto right = hn::LoadU(d, s.responses + at + s.across);
+      dark.Add(Joined(Turned(left), right), against);
+      bright.Add(Joined(left, Turned(right)), against);
+      end(band);
+    }
+    dark.Store(s.evidence[0] + start, s.foot[0] + start);
+    bright.Store(s.evidence[1] + start, s.foot[1] + start);
   }
 }
 
+#endif  // HWY_TARGET
+
 int FindPeaks(const std::int16_t* evidence, int count, int least, int reach, int* places) {
-  const Narrow d;
+  const hn::CappedTag<std::int16_t, kTemplateChunk> d;
   const auto enough = hn::Set(d, static_cast<std::int16_t>(least - 1));
   int found = 0;
   for (int start = 0; start < count; start += static_cast<int>(hn::Lanes(d))) {
@@ -157,43 +236,78 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace bole {
 
+HWY_EXPORT(ThinSums);
 HWY_EXPORT(EdgeResponses);
+HWY_EXPORT(EdgeResponsesAbove);
 HWY_EXPORT(SumColumns);
 HWY_EXPORT(FindPeaks);
 
-void edge_responses(const std::uint16_t* sum, int flank, int step, std::uint16_t factor, int count,
-                    std::int16_t* out) {
-  HWY_DYNAMIC_DISPATCH(EdgeResponses)(sum, flank, step, factor, count, out);
+void thin_sums(const std::uint16_t* sum, int step, int count, std::uint16_t* out) {
+  HWY_DYNAMIC_DISPATCH(ThinSums)(sum, step, count, out);
+}
+
+void edge_responses(const std::uint16_t* sum, int flank, std::int16_t factor, int count,
+                    std::uint8_t* out) {
+  HWY_DYNAMIC_DISPATCH(EdgeResponses)(sum, flank, factor, count, out);
+}
+
+void edge_responses_above(const std::uint16_t* sum, int flank, std::int16_t factor, int count,
+                          const ResponsesAbove& out) {
+  HWY_DYNAMIC_DISPATCH(EdgeResponsesAbove)(sum, flank, factor, count, out);
 }
 
 void sum_columns(const ColumnSums& sums) { HWY_DYNAMIC_DISPATCH(SumColumns)(sums); }
 
-void edge_responses_plain(const std::uint16_t* sum, int flank, int step, std::uint16_t factor,
-                          int count, std::int16_t* out) {
+void thin_sums_plain(const std::uint16_t* sum, int step, int count, std::uint16_t* out) {
+  for (int i = 0; i < count; ++i) out[i] = sum[i * step];
+}
+
+namespace {
+
+int scaled(int value, int factor) { return (value * factor + (1 << 14)) >> 15; }
+
+// About 0.
+int respond(const std::uint16_t* sum, int flank, int factor) {
+  const auto bend = static_cast<std::int16_t>(sum[flank] - 2 * sum[0] + sum[-flank]);
+  return std::clamp(scaled(bend, factor), -kFullResponse, kFullResponse);
+}
+
+}  // namespace
+
+void edge_responses_plain(const std::uint16_t* sum, int flank, std::int16_t factor, int count,
+                          std::uint8_t* out) {
+  for (int i = 0; i < count; ++i)
+    out[i] = static_cast<std::uint8_t>(kNoResponse + respond(sum + i, flank, factor));
+}
+
+void edge_responses_above_plain(const std::uint16_t* sum, int flank, std::int16_t factor, int count,
+                                const ResponsesAbove& out) {
   for (int i = 0; i < count; ++i) {
-    const int x = i * step;
-    const auto bend = static_cast<std::int16_t>(sum[x + flank] - 2 * sum[x] + sum[x - flank]);
-    const int size = std::min(kFullResponse, std::abs(bend) * factor >> 16);
-    out[i] = static_cast<std::int16_t>(bend < 0 ? -size : size);
+    const int value = respond(sum + i, flank, factor);
+    out.right_sign[i] = static_cast<std::uint8_t>(kNoResponse + scaled(value, kRightSign));
+    for (const int sign : {1, -1}) {
+      const int either =
+          std::max(scaled(value, sign * kEitherSign), scaled(value, -sign * kWrongSign));
+      out.either_sign[sign < 0][i] = static_cast<std::uint8_t>(kNoEitherSign + either);
+    }
   }
 }
 
 void sum_columns_plain(const ColumnSums& s) {
-  const auto soft = [](int v) { return std::max(v, (-11 * v) >> 4); };
+  const auto joined = [](int l, int r) { return (((l + r + 1) >> 1) + std::min(l, r) + 1) >> 1; };
+  const auto turned = [](int response) { return 2 * kNoResponse - response; };
   for (int i = 0; i < s.count; ++i) {
     for (const int polarity : {0, 1}) {
-      const int sign = polarity == 0 ? 1 : -1;
       int sum = 0, best = 0, foot = 0;
       for (int band = 0; band < s.last_foot; ++band) {
-        const std::int16_t* at = s.responses + static_cast<std::ptrdiff_t>(band) * s.pitch + i;
-        const int l = -sign * at[0], r = sign * at[s.across];
-        const auto joined = [](int a, int b) { return ((a + b) >> 2) + (std::min(a, b) >> 1); };
-        int value = joined(l, r) - 19;
+        const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(band) * s.pitch + i;
+        const int left = s.responses[at], right = s.responses[at + s.across];
+        int value = polarity == 0 ? joined(turned(left), right) : joined(left, turned(right));
         if (band < s.horizon) {
-          value =
-              std::max(((joined(soft(l), soft(r)) - 35) * 13) >> 5, ((joined(l, r) - 24) * 5) >> 3);
+          value = std::max(value, joined(s.either_sign[1 - polarity][at],
+                                         s.either_sign[polarity][at + s.across]));
         }
-        sum = std::max(0, sum + value);
+        sum = std::max(0, sum + value - (band < s.horizon ? kAgainstAbove : kAgainst));
         if (band + 1 < s.first_foot || sum <= best) continue;
         best = sum;
         foot = band + 1;

@@ -13,10 +13,11 @@ namespace bole {
 namespace {
 
 constexpr double kContrast = 0.20;  // of log brightness: full contrast
-constexpr int kLeastEvidence = 64;  // of a candidate
+constexpr int kLeastEvidence = 96;  // of a candidate
 constexpr double kWidthStep = 1.15;
 constexpr double kNarrowest = 4;  // columns
 constexpr int kWidestFlank = 28;  // columns
+constexpr int kWidestStep = 4;    // columns from one left edge to the next
 constexpr double kSlope = 0.30;   // rising ground shifts feet by up to this tangent
 
 // To the nearest whole number; columns stay far from the limits.
@@ -52,7 +53,7 @@ Templates::Templates(const DetectorSetup& setup, const Bands& bands, int most_ca
     return std::clamp((horizon + focal_ * down) / Bands::kRows, 0.0, static_cast<double>(bands_));
   };
 
-  for (const int width : {2, 3, 5, 8, 12, 18, kWidestFlank}) add_flank(bands, width);
+  for (const int width : {2, 3, 5, 8, 12, 16, kWidestFlank}) add_flank(bands, width);
   const Search& search = setup.search;
   const double narrowest =
       std::max(kNarrowest, 0.85 * focal_ * angular_width(search.diameter.low, search.range.high));
@@ -92,6 +93,7 @@ Templates::Templates(const DetectorSetup& setup, const Bands& bands, int most_ca
       peaks[i].foot.resize(n);
     }
   }
+  thinned_.resize(static_cast<std::size_t>(bands_) * thinned_pitch(2));
   places_.resize(width_);
   found_.reserve(20000);
   kept_.reserve(most_);
@@ -100,7 +102,7 @@ Templates::Templates(const DetectorSetup& setup, const Bands& bands, int most_ca
 
 void Templates::add_flank(const Bands& bands, int width) {
   static_assert(kWidestFlank <= Bands::kMostFlank);
-  const int step = width >= 12 ? 4 : width >= 8 ? 2 : 1;
+  const int step = width >= 12 ? kWidestStep : width >= 8 ? 2 : 1;
   Flank flank{.width = width,
               .step = step,
               .pitch = (width_ + widest_ + 8) / step + 2 * kTemplateChunk,
@@ -120,26 +122,67 @@ void Templates::add_flank(const Bands& bands, int width) {
       }
     }
   }
-  responses_.resize(std::max(responses_.size(), static_cast<std::size_t>(bands_) * flank.pitch));
+  const auto make_room = [&](std::vector<std::uint8_t>& responses, int rows) {
+    responses.resize(std::max(responses.size(), static_cast<std::size_t>(rows) * flank.pitch));
+  };
+  make_room(responses_, bands_);
+  make_room(rising_, horizon_band_);
+  make_room(falling_, horizon_band_);
   flanks_.push_back(std::move(flank));
 }
 
+int Templates::thinned_pitch(int step) const {
+  return (width_ + widest_ + 3 * kWidestFlank) / step + 2 * kTemplateChunk;
+}
+
+// Keeps every so many of a band's sums, from kWidestFlank columns before the first one on.
+void Templates::thin(const Bands& bands, int step) {
+  static_assert(kWidestFlank % kWidestStep == 0);
+  const int pitch = thinned_pitch(step);
+  for (int band = 0; band < bands_; ++band) {
+    thin_sums(bands.sum(band) - kWidestFlank, step, pitch - kTemplateChunk,
+              thinned_.data() + static_cast<std::ptrdiff_t>(band) * pitch);
+  }
+}
+
+const std::uint16_t* Templates::sums_of(const Bands& bands, int band, int step) const {
+  if (step == 1) return bands.sum(band);
+  return thinned_.data() + static_cast<std::ptrdiff_t>(band) * thinned_pitch(step) +
+         kWidestFlank / step;
+}
+
 void Templates::respond(const Bands& bands, const Flank& flank) {
-  const auto factor = static_cast<std::uint16_t>(
-      std::lround(65536 * kFullResponse / (kContrast * Bands::kScale * flank.width)));
-  const auto responses = [&](int band) {
-    return responses_.data() + static_cast<std::size_t>(band) * flank.pitch;
-  };
-  for (int band = 0; band < bands_; ++band)
-    edge_responses(bands.sum(band), flank.width, flank.step, factor, flank.count, responses(band));
-  for (const Unseen& run : flank.unseen)
-    std::fill(responses(run.band) + run.first, responses(run.band) + run.last, std::int16_t{0});
+  const auto factor = static_cast<std::int16_t>(
+      std::lround(32768 * kFullResponse / (kContrast * Bands::kScale * flank.width)));
+  const int wide = flank.width / flank.step;
+  for (int band = 0; band < bands_; ++band) {
+    const std::uint16_t* const sums = sums_of(bands, band, flank.step);
+    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(band) * flank.pitch;
+    if (band < horizon_band_) {
+      edge_responses_above(sums, wide, factor, flank.count,
+                           {.right_sign = responses_.data() + at,
+                            .either_sign = {rising_.data() + at, falling_.data() + at}});
+    } else {
+      edge_responses(sums, wide, factor, flank.count, responses_.data() + at);
+    }
+  }
+  for (const Unseen& run : flank.unseen) {
+    const auto forget = [&](std::vector<std::uint8_t>& responses) {
+      const auto row = responses.begin() + static_cast<std::ptrdiff_t>(run.band) * flank.pitch;
+      std::fill(row + run.first, row + run.last, std::uint8_t{kNoResponse});
+    };
+    forget(responses_);
+    if (run.band >= horizon_band_) continue;
+    forget(rising_);
+    forget(falling_);
+  }
 }
 
 void Templates::accumulate(int size_index) {
   const Size& size = sizes_[size_index];
   const Flank& flank = flanks_[size.flank];
   ColumnSums sums{.responses = responses_.data(),
+                  .either_sign = {rising_.data(), falling_.data()},
                   .pitch = flank.pitch,
                   .across = size.width / flank.step,
                   .horizon = horizon_band_,
@@ -243,12 +286,15 @@ void Templates::thin_out() {
 }
 
 std::span<const Candidate> Templates::find(const Bands& bands) {
-  // Sizes of the same flank follow each other.
-  int responded = -1;
+  // Sizes of the same flank follow each other, and flanks of the same step.
+  int responded = -1, step = 1;
   for (int i = 0; i < static_cast<int>(sizes_.size()); ++i) {
-    const int flank = sizes_[i].flank;
-    if (flank != responded) respond(bands, flanks_[flank]);
-    responded = flank;
+    const int index = sizes_[i].flank;
+    const Flank& flank = flanks_[index];
+    if (flank.step != step) thin(bands, flank.step);
+    if (index != responded) respond(bands, flank);
+    step = flank.step;
+    responded = index;
     accumulate(i);
   }
   found_.clear();

@@ -67,6 +67,9 @@ class Templates {
   };
 
   void add_flank(const Bands& bands, int width);
+  int thinned_pitch(int step) const;
+  void thin(const Bands& bands, int step);
+  const std::uint16_t* sums_of(const Bands& bands, int band, int step) const;
   void respond(const Bands& bands, const Flank& flank);
   void accumulate(int size_index);
   void pad(std::int16_t* evidence, int count) const;
@@ -82,9 +85,12 @@ class Templates {
   double focal_;
   std::vector<Size> sizes_;
   std::vector<Flank> flanks_;
-  std::vector<std::int16_t> responses_;  // of one flank at a time, so that they stay in the cache:
-                                         // bands x pitch; brighter to the right is positive
-  std::vector<Peaks> peaks_[2];          // dark, bright
+  // Of one step at a time: bands x pitch.
+  std::vector<std::uint16_t> thinned_;
+  // Of one flank at a time, so that they stay in the cache: bands x pitch, and above the horizon
+  // what either sign makes of it.
+  std::vector<std::uint8_t> responses_, rising_, falling_;
+  std::vector<Peaks> peaks_[2];  // dark, bright
   std::vector<int> places_;
   std::vector<Candidate> found_, kept_;
   // Kept candidates by the part of the turn that their centre lies in: a list for each.

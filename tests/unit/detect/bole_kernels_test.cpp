@@ -75,15 +75,40 @@ TEST_P(Kernels, SumBandsAsThePlainLoops) {
   }
 }
 
+TEST_P(Kernels, ThinSumsAsThePlainLoops) {
+  simulate::Random random(7);
+  const auto sums = running_sums(4000, random);
+  for (const int step : {1, 2, 4}) {
+    std::vector<std::uint16_t> fast(777 + kTemplateChunk), plain(777);
+    thin_sums(sums.data(), step, 777, fast.data());
+    thin_sums_plain(sums.data(), step, 777, plain.data());
+    fast.resize(777);
+    EXPECT_EQ(fast, plain) << step;
+  }
+}
+
 TEST_P(Kernels, RespondToEdgesAsThePlainLoops) {
+  constexpr int kCount = 1000;
   simulate::Random random(1);
   const auto sums = running_sums(4000, random);
-  for (const auto& [flank, step] : {std::pair(2, 1), {5, 1}, {8, 2}, {18, 4}, {28, 4}}) {
-    std::vector<std::int16_t> fast(1000 / step + kTemplateChunk), plain(fast.size());
-    const auto factor = static_cast<std::uint16_t>(65536 * 64 / 51.2 / flank);
-    edge_responses(sums.data() + 300, flank, step, factor, 1000 / step, fast.data());
-    edge_responses_plain(sums.data() + 300, flank, step, factor, 1000 / step, plain.data());
-    for (int i = 0; i < 1000 / step; ++i) ASSERT_EQ(fast[i], plain[i]) << flank << " at " << i;
+  for (const int flank : {2, 5, 7, 28}) {
+    const auto factor = static_cast<std::int16_t>(32768 * kFullResponse / 51.2 / flank);
+    // [0]: below the horizon.
+    std::array<std::vector<std::uint8_t>, 4> fast, plain;
+    for (auto& responses : fast) responses.resize(kCount + kTemplateChunk);
+    for (auto& responses : plain) responses.resize(kCount);
+    const auto above = [](auto& out) {
+      return ResponsesAbove{out[1].data(), {out[2].data(), out[3].data()}};
+    };
+    edge_responses(sums.data() + 300, flank, factor, kCount, fast[0].data());
+    edge_responses_above(sums.data() + 300, flank, factor, kCount, above(fast));
+    edge_responses_plain(sums.data() + 300, flank, factor, kCount, plain[0].data());
+    edge_responses_above_plain(sums.data() + 300, flank, factor, kCount, above(plain));
+    for (auto& responses : fast) responses.resize(kCount);
+    EXPECT_EQ(fast, plain) << flank;
+    const auto [least, most] = std::ranges::minmax(plain[0]);
+    EXPECT_EQ(least, kNoResponse - kFullResponse) << flank;
+    EXPECT_EQ(most, kNoResponse + kFullResponse) << flank;
   }
 }
 
@@ -103,12 +128,19 @@ TEST_P(Kernels, FindPeaksAsThePlainLoops) {
 TEST_P(Kernels, SumColumnsAsThePlainLoops) {
   simulate::Random random(2);
   constexpr int kBands = 97, kCount = 333, kPitch = 600;
-  std::vector<std::int16_t> responses(kBands * kPitch);
-  for (auto& response : responses)
-    response = static_cast<std::int16_t>(random.chance(0.4F) ? 64 : random.uniform(-64, 64));
+  std::vector<std::uint8_t> responses[3];
+  for (auto& kind : responses) {
+    kind.resize(kBands * kPitch);
+    for (auto& response : kind) {
+      const float value = random.uniform(-kFullResponse, kFullResponse);
+      response = static_cast<std::uint8_t>(
+          kNoResponse + (random.chance(0.4F) ? kFullResponse : static_cast<int>(value)));
+    }
+  }
   std::vector<std::int16_t> results[8];
   for (auto& result : results) result.assign(kCount + kTemplateChunk, -1);
-  ColumnSums sums{.responses = responses.data(),
+  ColumnSums sums{.responses = responses[0].data(),
+                  .either_sign = {responses[1].data(), responses[2].data()},
                   .pitch = kPitch,
                   .across = 17,
                   .horizon = 29,
