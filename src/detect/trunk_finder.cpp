@@ -14,6 +14,7 @@ constexpr float kWorthAnswering = -3.5F;  // logit
 constexpr float kFarBetter = 3.0F;        // of two logits: the second look seldom turns them round
 constexpr float kSure = 2.0F;             // logit
 constexpr float kExpectation = 2.0F;      // logit that rivals must be better by
+constexpr float kMostHidden = 0.6F;       // of a trunk's width, behind another one
 constexpr float kHopeless = -99;          // logit
 constexpr double kNarrower = 0.8;         // than any that is searched for, it may still be one
 constexpr double kFarther = 1.6;          // likewise, of where it stands on level ground
@@ -289,15 +290,15 @@ bool TrunkFinder::explained(const TrunkShape& shape, float logit) const {
   });
 }
 
-// Whether two outlines explain the same picture: one covers most of the other, or they take one
-// edge from its two sides.
+// Whether two outlines explain the same picture: one covers more of the other than of a tree that
+// may be half hidden behind another one, or they take one edge from its two sides.
 bool TrunkFinder::same_pixels(const TrunkShape& a, const TrunkShape& b) const {
   const float row = std::min(a.foot, b.foot);
   const auto left = [&](const TrunkShape& s) { return s.left + s.slope() * (row - s.foot); };
   const float shift = whole_turns(a.centre() - b.centre());
   const float a0 = left(a), a1 = a0 + a.width(), b0 = left(b) + shift, b1 = b0 + b.width();
   const float narrower = std::min(a.width(), b.width());
-  if (std::min(a1, b1) - std::max(a0, b0) > 0.5F * narrower) return true;
+  if (std::min(a1, b1) - std::max(a0, b0) > kMostHidden * narrower) return true;
   const float near = std::max(1.5F, 0.2F * narrower);
   return a.dark != b.dark && (std::abs(a0 - b1) < near || std::abs(a1 - b0) < near);
 }
