@@ -21,6 +21,8 @@ constexpr double kAsideGate = 12.0;   // the part of that across the line of sig
 constexpr double kWidthSpread = 0.2;  // of log angular width between two sightings of one tree
 constexpr double kPartlySeen = 8.0;   // most that a wrong width costs: half a trunk may be lit
 constexpr double kPartOfWidth = 0.3;  // that its middle is off by then
+constexpr double kScoreSpread = 3.0;  // of a score's logit between two sightings of one tree
+constexpr double kUnlike = 6.0;       // most that an unlikely score costs
 constexpr double kJustSeen = 0.3;     // seconds
 constexpr double kSamePlace = 0.3;    // of a tree's width
 constexpr double kSameWidth = 0.75;   // in kWidthSpread
@@ -34,6 +36,11 @@ constexpr double kScaleSigma = 0.05;   // of the scale as it is
 constexpr double kLeastError = 0.03;   // of a range seen, as a share of it
 
 double squared(double x) { return x * x; }
+
+double logit(double probability) {
+  const double p = std::clamp(probability, 0.001, 0.999);
+  return std::log(p / (1 - p));
+}
 
 // After longer nothing says how the robot moved.
 bool follows(double elapsed) {
@@ -144,7 +151,9 @@ double Tracker::cost_of(const Tree& tree, const Track& track, const Place& place
   const double shape = ratio > 0 ? squared(ratio) : std::min(squared(ratio), kPartlySeen);
   const double aside = squared(turn) / across;
   const double misfit = aside + squared(step) / along + shape;
-  return aside > kAsideGate || misfit > kGate ? Assignment::kForbidden : misfit + track.unseen();
+  if (aside > kAsideGate || misfit > kGate) return Assignment::kForbidden;
+  const double doubt = (logit(tree.score) - logit(track.probability())) / kScoreSpread;
+  return misfit + track.unseen() + std::min(squared(doubt), kUnlike);
 }
 
 std::span<const ExpectedTrunk> Tracker::expected(double elapsed) {
