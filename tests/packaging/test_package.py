@@ -55,6 +55,12 @@ def test_each_package_says_what_it_is_and_what_it_needs(packages):
     assert "opencv-imgcodecs" not in fields(packages["bole-tools"])["Depends"]
 
 
+def test_each_package_says_what_is_new_in_its_version(packages, root):
+    for name, package in packages.items():
+        changelog = gzip.decompress((root / f"usr/share/doc/{name}/changelog.gz").read_bytes())
+        assert changelog.startswith(f"bole ({fields(package)['Version']})".encode())
+
+
 def test_the_service_runs_what_is_installed(root):
     unit = (root / "usr/lib/systemd/system/boled.service").read_text()
     assert "ExecStart=/usr/bin/boled\n" in unit and "@" not in unit
