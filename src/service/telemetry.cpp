@@ -10,6 +10,9 @@
 namespace bole {
 namespace {
 
+constexpr std::int64_t kUnusableInARow = 5;    // as many periods as without a frame make a stall
+constexpr std::int64_t kRateNs = 500'000'000;  // over less a rate would be noise
+
 // A replay names each bad file; a camera with ever new words must not fill the memory.
 constexpr std::size_t kMostTold = 1000;
 
@@ -44,7 +47,7 @@ Telemetry::Telemetry(std::string version, std::string camera)
     : version_(std::move(version)),
       camera_(std::move(camera)),
       start_ns_(SystemClock().mono_ns()),
-      last_status_ns_(start_ns_) {}
+      rates_taken_ns_(start_ns_) {}
 
 void Telemetry::capture_event(const CameraEvent& event) {
   const bool streaming = event.state == CameraState::streaming;
@@ -80,6 +83,7 @@ void Telemetry::bad_frame(const std::string& reason) {
 void Telemetry::unusable(std::string_view file, const std::string& reason) {
   const std::lock_guard lock(mutex_);
   ++dropped_.unusable;
+  ++unusable_in_a_row_;
   note((file.empty() ? "frame" : std::string(file)) + ": " + reason);
 }
 
@@ -94,6 +98,7 @@ void Telemetry::processed(std::int64_t latency_ns, std::int64_t trees_rejected) 
   const std::lock_guard lock(mutex_);
   recent_.at(static_cast<std::size_t>(lists_) % kRecent) = latency_ns;
   ++lists_;
+  unusable_in_a_row_ = 0;
   latency_.add(latency_ns);
   trees_rejected_ = trees_rejected;
 }
@@ -136,8 +141,14 @@ status_t Telemetry::status(std::int64_t now_ns, bool stopping) {
   status.version = version_;
   status.camera = camera_;
   status.source = source_;
-  status.state = stopping ? status_t::STATE_STOPPING : wire_state(event_.state);
-  if (event_.state != CameraState::streaming) status.state_reason = event_.reason;
+  const bool streaming = event_.state == CameraState::streaming;
+  status.state = wire_state(event_.state);
+  if (!streaming) status.state_reason = event_.reason;
+  if (streaming && unusable_in_a_row_ >= kUnusableInARow) {
+    status.state = status_t::STATE_STALLED;
+    status.state_reason = "no usable frame: " + last_error_;
+  }
+  if (stopping) status.state = status_t::STATE_STOPPING;
   status.degraded = degraded_reason_.empty() ? 0 : 1;
   status.degraded_reason = degraded_reason_;
   status.frames = capture_.frames;
@@ -146,13 +157,9 @@ status_t Telemetry::status(std::int64_t now_ns, bool stopping) {
   status.camera_events = camera_events();
   status.last_error = last_error_;
 
-  const float seconds =
-      static_cast<float>(std::max<std::int64_t>(now_ns - last_status_ns_, 1)) / 1e9F;
-  status.frame_rate = static_cast<float>(capture_.frames - last_frames_) / seconds;
-  status.list_rate = static_cast<float>(lists_ - last_lists_) / seconds;
-  last_status_ns_ = now_ns;
-  last_frames_ = capture_.frames;
-  last_lists_ = lists_;
+  take_rates(now_ns);
+  status.frame_rate = frame_rate_;
+  status.list_rate = list_rate_;
 
   std::array<std::int64_t, kRecent> sorted = recent_;
   const auto count = std::min(static_cast<std::size_t>(lists_), kRecent);
@@ -162,6 +169,17 @@ status_t Telemetry::status(std::int64_t now_ns, bool stopping) {
   status.latency_p99_ms = ms(quantile(values, 0.99));
   status.latency_max_ms = ms(values.empty() ? 0 : values.back());
   return status;
+}
+
+void Telemetry::take_rates(std::int64_t now_ns) {
+  const std::int64_t since_ns = now_ns - rates_taken_ns_;
+  if (since_ns < kRateNs) return;
+  const float seconds = static_cast<float>(since_ns) / 1e9F;
+  frame_rate_ = static_cast<float>(capture_.frames - rated_frames_) / seconds;
+  list_rate_ = static_cast<float>(lists_ - rated_lists_) / seconds;
+  rates_taken_ns_ = now_ns;
+  rated_frames_ = capture_.frames;
+  rated_lists_ = lists_;
 }
 
 Telemetry::Summary Telemetry::summary() const {

@@ -31,14 +31,16 @@ class Telemetry {
   void overwritten();
   /// A frame that capture could not use (it counts them itself). Each reason is logged once.
   void bad_frame(const std::string& reason);
-  /// A frame that processing could not use. Each reason is logged once, then counted.
+  /// A frame that processing could not use. Each reason is logged once, then counted. Where it is
+  /// one after the other, a status says that the camera is stalled.
   void unusable(std::string_view file, const std::string& reason);
   /// A list was encoded; `latency_ns` from capture to publish.
   void processed(std::int64_t latency_ns, std::int64_t trees_rejected);
   /// Why the camera cannot see well; empty when it can.
   void vision(std::string_view reason);
 
-  /// The status now, without the clocks and the buses. Rates are over the time since the last call.
+  /// The status now, without the clocks and the buses. Rates are over the time since the last call,
+  /// or the one before where that was less than half a second ago.
   status_t status(std::int64_t now_ns, bool stopping);
 
   struct Summary {
@@ -55,6 +57,7 @@ class Telemetry {
   std::vector<counter_t> drops() const;
   std::vector<counter_t> camera_events() const;
   void note(const std::string& trouble);
+  void take_rates(std::int64_t now_ns);
 
   mutable std::mutex mutex_;
   const std::string version_;
@@ -65,6 +68,7 @@ class Telemetry {
   ProcessingDrops dropped_;
   std::int64_t trees_rejected_ = 0;
   std::int64_t lists_ = 0;
+  std::int64_t unusable_in_a_row_ = 0;
   std::string degraded_reason_;
   std::string last_error_;
   std::set<std::string> told_;
@@ -72,9 +76,9 @@ class Telemetry {
   std::array<std::int64_t, kRecent> recent_{};  // latencies, a ring
 
   std::int64_t start_ns_ = 0;
-  std::int64_t last_status_ns_ = 0;
-  std::int64_t last_frames_ = 0;
-  std::int64_t last_lists_ = 0;
+  std::int64_t rates_taken_ns_ = 0;
+  std::int64_t rated_frames_ = 0, rated_lists_ = 0;
+  float frame_rate_ = 0, list_rate_ = 0;
 };
 
 }  // namespace bole

@@ -39,6 +39,20 @@ TEST(Telemetry, APlannerCanTellCannotSeeFromNoTrees) {
   EXPECT_EQ(telemetry.status(0, false).degraded, 0);
 }
 
+TEST(Telemetry, APlannerCanTellFramesThatAreOfNoUseFromStreaming) {
+  Telemetry telemetry("1.0", "front");
+  telemetry.capture_event({CameraState::streaming, "cam 640x480", false});
+  for (int k = 0; k < 4; ++k) telemetry.unusable("", "is cut short");
+  EXPECT_EQ(telemetry.status(0, false).state, status_t::STATE_STREAMING) << "now and then one";
+  telemetry.unusable("", "is cut short");
+  EXPECT_EQ(telemetry.status(0, false).state, status_t::STATE_STALLED);
+  EXPECT_EQ(telemetry.status(0, false).state_reason, "no usable frame: frame: is cut short");
+  EXPECT_EQ(telemetry.status(0, true).state, status_t::STATE_STOPPING);
+  telemetry.processed(1'000'000, 0);
+  EXPECT_EQ(telemetry.status(0, false).state, status_t::STATE_STREAMING);
+  EXPECT_EQ(telemetry.status(0, false).state_reason, "");
+}
+
 TEST(Telemetry, DropsAreToldByCause) {
   Telemetry telemetry("1.0", "front");
   CaptureCounts counts;
@@ -87,7 +101,9 @@ TEST(Telemetry, RatesAreOverTheTimeSinceTheLastStatus) {
   const status_t status = telemetry.status(now_ns + 2'000'000'000, false);
   EXPECT_FLOAT_EQ(status.frame_rate, 10);
   EXPECT_FLOAT_EQ(status.list_rate, 5);
-  EXPECT_FLOAT_EQ(telemetry.status(now_ns + 3'000'000'000, false).list_rate, 0);
+  telemetry.processed(1'000'000, 0);
+  EXPECT_FLOAT_EQ(telemetry.status(now_ns + 2'100'000'000, false).list_rate, 5) << "too soon";
+  EXPECT_FLOAT_EQ(telemetry.status(now_ns + 3'000'000'000, false).list_rate, 1);
 }
 
 TEST(Telemetry, LatencyIsThatOfTheLastLists) {
