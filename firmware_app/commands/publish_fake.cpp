@@ -47,6 +47,9 @@ class FakeDaemon {
     telemetry_.capture_counts(counts);
   }
 
+  // A bus that takes nothing is not waited for.
+  void interrupt() { buses_.interrupt(); }
+
   void publish_status() {
     status_t status = telemetry_.status(clock_.mono_ns(), false);
     status.utime = clock_.utc_us();
@@ -81,7 +84,7 @@ void publish_fake(const DaemonConfig& config, const Options& options) {
   for (std::int64_t seq = 0; options.count == 0 || seq < options.count; ++seq) {
     const double seconds = static_cast<double>(seq) / options.rate_hz;
     const std::int64_t due_ns = start_ns + static_cast<std::int64_t>(seconds * 1e9);
-    if (stopped_before(due_ns, stop)) return;
+    if (stopped_before(due_ns, stop)) return daemon.interrupt();
     daemon.publish_list(seq, seconds);
     if (due_ns >= next_status_ns) {
       daemon.publish_status();

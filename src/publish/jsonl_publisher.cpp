@@ -23,7 +23,9 @@ std::string reason(int error) { return std::generic_category().message(error); }
 
 JsonlPublisher::JsonlPublisher(const std::filesystem::path& target)
     : fd_(target == "-" ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)
-                        : ::open(target.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)) {
+                        // Not to wait for a pipe's reader, whom nobody could interrupt.
+                        : ::open(target.c_str(),
+                                 O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0644)) {
   if (!fd_) {
     throw ConfigError("publish", "jsonl:" + target.string(), "cannot be written: " + reason(errno),
                       "give a path that may be written to, or - for standard output");

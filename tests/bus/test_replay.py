@@ -1,6 +1,7 @@
 """boled over a rendered drive: what comes out, and that others read the same."""
 
 import json
+import os
 import re
 import subprocess
 import time
@@ -108,11 +109,21 @@ def test_a_full_disk_is_told_once_and_no_success_in_lockstep(boled):
     assert "20 lists are lost" in run.stderr.splitlines()[-1]
 
 
-def test_a_reader_that_stops_does_not_keep_boled_from_ending(programs, drive):
+@pytest.mark.parametrize("program", ["boled", "publish-fake"])
+def test_a_reader_that_stops_does_not_keep_boled_from_ending(programs, drive, program):
     command = [programs / "boled", "--camera", drive / "camera.toml", "--source", f"replay:{drive}",
                "--pace", "fast", "--loop", "--publish", "jsonl:-"]
+    if program == "publish-fake":
+        command = [programs / "bolectl", "publish-fake", "--rate", "1000", "--publish", "jsonl:-"]
     with running(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as daemon:
         daemon.stdout.readline()
         time.sleep(1)  # the pipe fills
         daemon.terminate()
         assert daemon.wait(5) == 0
+
+
+def test_a_pipe_that_nobody_reads_is_an_error_and_nothing_to_wait_for(boled, tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    run = boled("--publish", f"jsonl:{tmp_path}/pipe")
+    assert run.returncode == 2
+    assert f"jsonl:{tmp_path}/pipe: cannot be written" in run.stderr
