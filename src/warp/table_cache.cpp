@@ -1,9 +1,14 @@
 #include "warp/table_cache.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
+#include <ranges>
+#include <string>
+#include <system_error>
+#include <vector>
 
 #include "base/errors.h"
 
@@ -14,6 +19,25 @@ std::string file_name(std::uint32_t digest) {
   std::array<char, 32> name{};
   const int length = std::snprintf(name.data(), name.size(), "warp-%08x.table", digest);
   return {name.data(), static_cast<std::size_t>(length)};
+}
+
+// Each change of a camera makes another table: the newest are enough.
+void forget_old_tables(const std::filesystem::path& directory) {
+  constexpr std::size_t kKept = 8;
+  struct Stored {
+    std::filesystem::file_time_type written;
+    std::filesystem::path path;
+  };
+  std::vector<Stored> stored;
+  std::error_code error;  // whatever is not to be read or removed stays
+  for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
+    const std::string name = entry.path().filename();
+    if (!name.starts_with("warp-") || !name.ends_with(".table")) continue;
+    stored.push_back({entry.last_write_time(error), entry.path()});
+  }
+  std::ranges::sort(stored, std::ranges::greater(), &Stored::written);
+  for (const Stored& old : stored | std::views::drop(kKept))
+    std::filesystem::remove(old.path, error);
 }
 
 std::optional<WarpTable> load(const std::filesystem::path& path, std::uint32_t digest) {
@@ -51,6 +75,7 @@ CachedTable load_or_build_warp_table(const Camera& camera,
   CachedTable result{build_warp_table(camera), true, ""};
   try {
     result.table.store(path);
+    forget_old_tables(cache_directory);
   } catch (const ConfigError& error) {
     result.trouble = error.what();
   }

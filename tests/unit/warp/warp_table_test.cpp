@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <fstream>
+#include <string>
+
 #include "base/errors.h"
 #include "unit/warp/test_cameras.h"
 #include "warp/table_cache.h"
@@ -203,6 +207,26 @@ TEST(TableCache, BuildsOnceThenMapsAndBuildsAnewWhatIsDamaged) {
   }
   EXPECT_TRUE(load_or_build_warp_table(camera, cache).built);
   EXPECT_FALSE(load_or_build_warp_table(camera, cache).built);
+}
+
+TEST(TableCache, KeepsTheNewestTablesAndWhateverElseIsThere) {
+  const test::TemporaryFolder folder;
+  const Camera camera = load_camera(write_small_camera(folder));
+  const auto cache = folder.path() / "cache";
+  std::filesystem::create_directory(cache);
+  const auto now = std::filesystem::file_time_type::clock::now();
+  const auto put = [&](const std::string& name, int hours_ago) {
+    std::ofstream(cache / name) << "other";
+    std::filesystem::last_write_time(cache / name, now - std::chrono::hours(hours_ago));
+  };
+  for (int k = 1; k <= 9; ++k) put("warp-0000000" + std::to_string(k) + ".table", k);
+  put("notes.txt", 99);
+  EXPECT_TRUE(load_or_build_warp_table(camera, cache).built);
+  EXPECT_FALSE(load_or_build_warp_table(camera, cache).built);
+  EXPECT_TRUE(std::filesystem::exists(cache / "warp-00000007.table"));
+  EXPECT_FALSE(std::filesystem::exists(cache / "warp-00000008.table"));
+  EXPECT_FALSE(std::filesystem::exists(cache / "warp-00000009.table"));
+  EXPECT_TRUE(std::filesystem::exists(cache / "notes.txt"));
 }
 
 TEST(TableCache, WithoutAPlaceToKeepItTheTableIsStillThere) {
