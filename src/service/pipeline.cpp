@@ -84,9 +84,9 @@ void Pipeline::capture() {
       captured = {};  // an overwritten frame's buffer goes home
     }
     if (!grab.reason.empty()) telemetry_.bad_frame(grab.reason);
-    if (supervisor_.state() != CameraState::streaming) {
-      service_manager_.progress();  // the camera is properly being waited for
-    }
+    const bool waiting =
+        supervisor_.state() != CameraState::streaming || grab.kind == Grab::Kind::timeout;
+    if (waiting && !processing_) service_manager_.progress();  // the camera is properly waited for
   }
   frames_.close();
 }
@@ -95,12 +95,14 @@ void Pipeline::process() {
   let_others_first();
   Captured captured;
   while (frames_.take(captured)) {
+    processing_ = true;
     try {
       process(captured);
     } catch (const std::exception& error) {
       telemetry_.unusable(captured.frame.file(), error.what());
     }
     captured = {};
+    processing_ = false;
     service_manager_.progress();
     service_manager_.ready();
   }

@@ -59,6 +59,7 @@ class Pipeline {
   std::vector<std::string> refused_;  // what was last told of it
   Wakeup attention_;                  // the status has changed, or a thread has ended
   std::atomic<bool> status_due_{true};
+  std::atomic<bool> processing_{false};  // a frame
   std::atomic<bool> processed_all_{false};
   Supervisor supervisor_;
   Mailbox<Captured> frames_;
