@@ -117,12 +117,12 @@ void Supervisor::account(const Grab& grab) {
   if (grab.kind != Grab::Kind::frame) return;
   ++counts_.frames;
   const std::int64_t seq = grab.frame.sensor_seq();
-  if (last_seq_ >= 0) {
-    const std::int64_t missing = seq - last_seq_ - 1 - unused_since_frame_;
-    counts_.drops[DropCause::missing] += std::max<std::int64_t>(missing, 0);
-  }
+  std::int64_t missing = 0;
+  if (last_seq_ >= 0) missing = seq - last_seq_ - 1 - unused_since_frame_;
+  counts_.drops[DropCause::missing] += std::max<std::int64_t>(missing, 0);
   last_seq_ = seq;
-  unused_since_frame_ = 0;
+  // Of several frames taken at once, some of those that were dropped may have come after this one.
+  unused_since_frame_ = std::clamp<std::int64_t>(-missing, 0, grab.drops.total());
 }
 
 void Supervisor::streaming() {

@@ -224,6 +224,15 @@ TEST_F(SupervisorTest, BadFramesAloneAreAStall) {
   EXPECT_EQ(supervisor.counts().drops[DropCause::damaged], 10);
 }
 
+TEST_F(SupervisorTest, CountsAFrameOnceThatWasDroppedTogetherWithTheOneBeforeIt) {
+  camera.frames({4, 5, 7, 9});
+  camera.script[1].drops[DropCause::damaged] = 1;  // number 6, taken with number 5
+  run_script();
+  const DropCounts& drops = supervisor.counts().drops;
+  EXPECT_EQ(drops[DropCause::damaged], 1);
+  EXPECT_EQ(drops[DropCause::missing], 1);  // number 8
+}
+
 TEST_F(SupervisorTest, GapsInTheSensorsCountAreMissingUnlessDroppedKnowingly) {
   camera.frames({7, 8, 12});                              // 9 to 11 are missing
   camera.other(Grab::Kind::bad_frame, "damaged");         // this is 13
