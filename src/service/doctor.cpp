@@ -32,7 +32,7 @@ std::string table_detail(const DaemonConfig::CameraPart& part, const Camera& cam
   }
   const auto folder =
       part.cache_directory.empty() ? default_cache_directory() : part.cache_directory;
-  auto nearest = folder;
+  auto nearest = folder.empty() ? folder : std::filesystem::absolute(folder);
   while (!nearest.empty() && !std::filesystem::exists(nearest)) nearest = nearest.parent_path();
   if (nearest.empty() || ::access(nearest.c_str(), W_OK) != 0) {
     throw std::runtime_error("cannot be kept in \"" + folder.string() +
@@ -96,6 +96,9 @@ std::string jsonl_detail(const std::filesystem::path& file) {
   if (file == "-") return "standard output";
   std::error_code error;
   const bool there = std::filesystem::exists(file, error);
+  if (std::filesystem::is_directory(file, error)) {
+    throw std::runtime_error(file.string() + " is a directory; name a file in it");
+  }
   const auto folder = file.has_parent_path() ? file.parent_path() : ".";
   if (::access(there ? file.c_str() : folder.c_str(), W_OK) != 0) {
     throw std::runtime_error(file.string() +

@@ -46,7 +46,8 @@ void refuse_replay_settings(const DaemonConfig& config) {
   for (const auto& [key, differs] :
        {std::pair{"pace", set.pace != usual.pace}, std::pair{"loop", set.loop},
         std::pair{"restamp", set.restamp}, std::pair{"start_s", set.start != usual.start},
-        std::pair{"end_s", set.end != usual.end}, std::pair{"faults", !set.faults.empty()}}) {
+        std::pair{"end_s", set.end != usual.end}, std::pair{"rate_hz", set.rate != usual.rate},
+        std::pair{"faults", !set.faults.empty()}}) {
     if (!differs) continue;
     throw ConfigError(config.file, std::string("source.") + key,
                       "is only for a replay, but the source is " + set.uri, "leave it out");

@@ -163,6 +163,8 @@ def test_doctor_says_what_is_well_and_what_mends_the_rest(bolectl, drive):
     common = ["doctor", "--camera", drive / "camera.toml", "--publish", "lcm"]
     well = bolectl(*common, "--source", f"replay:{drive}")
     assert well.returncode == 0 and "BAD" not in well.stdout
+    unmade = bolectl(*common, "--source", f"replay:{drive}", "--set", "camera.cache_directory=unmade")
+    assert unmade.returncode == 0, unmade.stdout
     ill = bolectl(*common, "--source", "v4l2:/dev/v4l/by-id/nothing")
     assert ill.returncode == 1
     assert re.search("^BAD +source: .*nothing", ill.stdout, re.MULTILINE)
@@ -172,6 +174,7 @@ def test_doctor_says_what_is_well_and_what_mends_the_rest(bolectl, drive):
     (["--publish", "zenoh", "--set", "zenoh.tls.ca=/nonexistent.pem"], "zenoh: .*nonexistent"),
     (["--publish", "zenoh", "--set", 'zenoh.mode="client"'], "zenoh: .*zenoh.connect"),
     (["--publish", "jsonl:/nonexistent/lists"], "jsonl: /nonexistent/lists"),
+    (["--publish", "jsonl:/tmp"], "jsonl: /tmp is a directory"),
     (["--source", "libcamera:nothing"], "source: .*(nothing|install)"),
 ])
 def test_doctor_takes_nothing_for_well_that_boled_would_refuse(bolectl, drive, settings, bad):
