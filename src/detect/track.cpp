@@ -12,7 +12,7 @@ namespace {
 
 // Standard deviations of the range's lasting and its fleeting error, in the detector's sigmas, and
 // how long the lasting one lasts.
-constexpr double kLasting = 0.75, kFleeting = 0.7;
+constexpr double kLasting = 1.0, kFleeting = 1.0;
 constexpr double kLastingSeconds = 3.0;
 // Bearings and widths err alike in frames that follow each other: so many sightings count for one.
 constexpr double kAlikeBearings = 4.0, kAlikeWidths = 3.0;
