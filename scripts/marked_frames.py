@@ -55,6 +55,9 @@ def held_out(folder, seed, preset, frames):
     rendered when it is not there."""
     target = folder / f"{preset}_{seed}"
     if (target / "truth.json").exists():
+        there = len(json.loads((target / "truth.json").read_text())["frames"])
+        if there != frames:
+            sys.exit(f"{target} holds {there} frames, not {frames}: name another folder")
         return target
     parts = []
     for k in range(frames):
