@@ -73,16 +73,19 @@ TEST(DaemonConfig, TheCameraIsNamedAfterItsFolder) {
 
 TEST(DaemonConfig, RefusesWhatIsNotAsItMustBeAndNamesIt) {
   for (const char* pair :
-       {"publish.min_score=1.5", "publish.min_score=nan", "publish.min_scor=0.5", "detec.mode=bole",
+       {"publish.min_score=1.5", "publish.min_score=nan", "publish.min_scor=0.5",
         "detect.mode=best", "publish.to=lcm", "publish.to=[\"udp\"]", "publish.to=[\"jsonl:\"]",
         "publish.to=[\"lcm\", \"lcm\"]", "zenoh.mode=broker", "camera.name=\"\"",
         "camera.name=abcdefghijklmnopq", "publish.robot=\"a/b\"", "source.loop=1",
-        "source.rate_hz=0", "lcm.url=tcp", "service.realtime_priority=100", "publish.min_score.x=1",
-        "camera.file=["}) {
+        "source.rate_hz=0", "lcm.url=tcp", "service.realtime_priority=100", "camera.file=["}) {
     const std::string text = pair;
-    const std::string part = text.substr(0, text.find_first_of(".="));
-    EXPECT_THAT([&] { with({text}); }, ThrowsMessage<ConfigError>(HasSubstr(part))) << text;
+    const std::string key = text.substr(0, text.find('='));
+    EXPECT_THAT([&] { with({text}); }, ThrowsMessage<ConfigError>(HasSubstr(key))) << text;
   }
+  EXPECT_THAT([] { with({"detec.mode=bole"}); },
+              ThrowsMessage<ConfigError>(HasSubstr("detec: is not a known key")));
+  EXPECT_THAT([] { with({"publish.min_score.x=1"}); },
+              ThrowsMessage<ConfigError>(HasSubstr("publish.min_score: is not a number")));
 }
 
 TEST(DaemonConfig, ASettingWithoutKeyOrValueSignIsRefused) {
