@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
-#include <ranges>
+#include <span>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -36,8 +36,8 @@ void forget_old_tables(const std::filesystem::path& directory) {
     stored.push_back({entry.last_write_time(error), entry.path()});
   }
   std::ranges::sort(stored, std::ranges::greater(), &Stored::written);
-  for (const Stored& old : stored | std::views::drop(kKept))
-    std::filesystem::remove(old.path, error);
+  const std::span<const Stored> old = std::span(stored).subspan(std::min(kKept, stored.size()));
+  for (const Stored& table : old) std::filesystem::remove(table.path, error);
 }
 
 std::optional<WarpTable> load(const std::filesystem::path& path, std::uint32_t digest) {
