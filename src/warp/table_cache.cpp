@@ -30,10 +30,11 @@ void forget_old_tables(const std::filesystem::path& directory) {
   };
   std::vector<Stored> stored;
   std::error_code error;  // whatever is not to be read or removed stays
-  for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
-    const std::string name = entry.path().filename();
+  std::filesystem::directory_iterator entry(directory, error);
+  for (; entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    const std::string name = entry->path().filename();
     if (!name.starts_with("warp-") || !name.ends_with(".table")) continue;
-    stored.push_back({entry.last_write_time(error), entry.path()});
+    stored.push_back({entry->last_write_time(error), entry->path()});
   }
   std::ranges::sort(stored, std::ranges::greater(), &Stored::written);
   const std::span<const Stored> old = std::span(stored).subspan(std::min(kKept, stored.size()));
