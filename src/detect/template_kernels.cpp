@@ -133,8 +133,9 @@ struct Run {
     sum = hn::SaturatedSub(hn::Add(sum, value), against);
   }
   HWY_INLINE void End(hn::Vec<Sums> here) {
-    foot = hn::IfThenElse(hn::Gt(sum, best), here, foot);
-    best = hn::Max(best, sum);
+    const auto higher = hn::Max(best, sum);  // many processors do not compare unsigned numbers
+    foot = hn::IfThenElse(hn::Eq(higher, best), foot, here);
+    best = higher;
   }
 };
 
