@@ -92,7 +92,7 @@ TEST(Telemetry, WhatBefellTheCameraIsCounted) {
 
 TEST(Telemetry, RatesAreOverTheTimeSinceTheLastStatus) {
   Telemetry telemetry("1.0", "front");
-  const std::int64_t now_ns = SystemClock().mono_ns();
+  const std::int64_t now_ns = SystemClock().mono_ns() + 1'000'000'000;
   telemetry.status(now_ns, false);
   CaptureCounts counts;
   counts.frames = 20;
