@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "detect/bands.h"
+#include "detect/rounding.h"
 
 // Vectors of scalable length are left out: they cannot stand in arrays.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
@@ -195,9 +196,9 @@ FoundEdge find_edge_plain(const EdgeBands& bands, const EdgeSearch& search) {
     const std::uint16_t* at = bands.sums + band * bands.pitch + search.first_column + i;
     const auto bend = static_cast<std::int16_t>(at[bands.flank] - 2 * at[0] + at[-bands.flank]);
     const int most = search.limit * bands.flank;
-    const int scaled = std::clamp<int>(bend, -most, most) * share_of_flank(bands, search);
-    const int value = (scaled + (1 << 14)) >> 15;
-    return band < bands.horizon ? std::max(value, (kWrongSign * value + (1 << 14)) >> 15) : value;
+    const int value =
+        times_fixed_point15(std::clamp<int>(bend, -most, most), share_of_flank(bands, search));
+    return band < bands.horizon ? std::max(value, times_fixed_point15(value, kWrongSign)) : value;
   };
   float highest = -1e9F;
   FoundEdge found;

@@ -7,4 +7,9 @@ namespace bole {
 /// and their plain loops round alike so.
 inline constexpr float kFar = 16384;
 
+/// value * factor / 2^15, to the nearest: what Highway calls MulFixedPoint15.
+constexpr int times_fixed_point15(int value, int factor) {
+  return (value * factor + (1 << 14)) >> 15;
+}
+
 }  // namespace bole

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cstdlib>
 
+#include "detect/rounding.h"
+
 // Vectors of scalable length are left out: they cannot stand in structures.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
@@ -68,9 +70,7 @@ void ThinSums(const std::uint16_t* sum, int step, int count, std::uint16_t* out)
   for (int i = 0; i < count; i += kShorts) {
     const std::uint16_t* at = sum + i * step;
     hn::Vec<Sums> first, second, third, fourth;
-    if (step == 1) {
-      first = hn::LoadU(d, at);
-    } else if (step == 2) {
+    if (step == 2) {
       hn::LoadInterleaved2(d, at, first, second);
     } else {
       hn::LoadInterleaved4(d, at, first, second, third, fourth);
@@ -265,12 +265,10 @@ void thin_sums_plain(const std::uint16_t* sum, int step, int count, std::uint16_
 
 namespace {
 
-int scaled(int value, int factor) { return (value * factor + (1 << 14)) >> 15; }
-
 // About 0.
 int respond(const std::uint16_t* sum, int flank, int factor) {
   const auto bend = static_cast<std::int16_t>(sum[flank] - 2 * sum[0] + sum[-flank]);
-  return std::clamp(scaled(bend, factor), -kFullResponse, kFullResponse);
+  return std::clamp(times_fixed_point15(bend, factor), -kFullResponse, kFullResponse);
 }
 
 }  // namespace
@@ -285,10 +283,11 @@ void edge_responses_above_plain(const std::uint16_t* sum, int flank, std::int16_
                                 const ResponsesAbove& out) {
   for (int i = 0; i < count; ++i) {
     const int value = respond(sum + i, flank, factor);
-    out.right_sign[i] = static_cast<std::uint8_t>(kNoResponse + scaled(value, kRightSign));
+    out.right_sign[i] =
+        static_cast<std::uint8_t>(kNoResponse + times_fixed_point15(value, kRightSign));
     for (const int sign : {1, -1}) {
-      const int either =
-          std::max(scaled(value, sign * kEitherSign), scaled(value, -sign * kWrongSign));
+      const int either = std::max(times_fixed_point15(value, sign * kEitherSign),
+                                  times_fixed_point15(value, -sign * kWrongSign));
       out.either_sign[sign < 0][i] = static_cast<std::uint8_t>(kNoEitherSign + either);
     }
   }

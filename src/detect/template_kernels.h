@@ -14,7 +14,7 @@ inline constexpr int kTemplateChunk = 64;
 inline constexpr int kFullResponse = 96;  ///< of an edge of full contrast
 inline constexpr int kNoResponse = 128;
 
-/// out[i] = sum[i step]; step is 1, 2 or 4.
+/// out[i] = sum[i step]; step is 2 or 4.
 void thin_sums(const std::uint16_t* sum, int step, int count, std::uint16_t* out);
 void thin_sums_plain(const std::uint16_t* sum, int step, int count, std::uint16_t* out);
 

@@ -8,13 +8,13 @@ namespace {
 
 constexpr double kShift = -2.86, kNow = 0.29, kBest = 0.90, kSteady = 3.56, kKnown = 1.20;
 
+}  // namespace
+
 double log_odds(double probability) {
   constexpr double kCertain = 1e-4;
   probability = std::clamp(probability, kCertain, 1 - kCertain);
   return std::log(probability / (1 - probability));
 }
-
-}  // namespace
 
 float TrackScore::update(float score, double seen, double range_share) {
   const double now = log_odds(score);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "detect/track_score.h"
 #include "geometry/angles.h"
 #include "geometry/ground.h"
 
@@ -21,7 +22,7 @@ constexpr double kAsideGate = 12.0;   // the part of that across the line of sig
 constexpr double kWidthSpread = 0.2;  // of log angular width between two sightings of one tree
 constexpr double kPartlySeen = 8.0;   // most that a wrong width costs: half a trunk may be lit
 constexpr double kPartOfWidth = 0.3;  // that its middle is off by then
-constexpr double kScoreSpread = 3.0;  // of a score's logit between two sightings of one tree
+constexpr double kScoreSpread = 3.0;  // of a score's log odds between two sightings of one tree
 constexpr double kUnlike = 6.0;       // most that an unlikely score costs
 constexpr double kJustSeen = 0.3;     // seconds
 constexpr double kSamePlace = 0.3;    // of a tree's width
@@ -37,9 +38,9 @@ constexpr double kLeastError = 0.03;   // of a range seen, as a share of it
 
 double squared(double x) { return x * x; }
 
-double logit(double probability) {
-  const double p = std::clamp(probability, 0.001, 0.999);
-  return std::log(p / (1 - p));
+// What is surer than this is as sure as it.
+double bounded_log_odds(double probability) {
+  return log_odds(std::clamp(probability, 0.001, 0.999));
 }
 
 // After longer nothing says how the robot moved.
@@ -152,7 +153,8 @@ double Tracker::cost_of(const Tree& tree, const Track& track, const Place& place
   const double aside = squared(turn) / across;
   const double misfit = aside + squared(step) / along + shape;
   if (aside > kAsideGate || misfit > kGate) return Assignment::kForbidden;
-  const double doubt = (logit(tree.score) - logit(track.probability())) / kScoreSpread;
+  const double doubt =
+      (bounded_log_odds(tree.score) - bounded_log_odds(track.probability())) / kScoreSpread;
   return misfit + track.unseen() + std::min(squared(doubt), kUnlike);
 }
 

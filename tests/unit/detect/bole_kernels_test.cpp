@@ -78,7 +78,7 @@ TEST_P(Kernels, SumBandsAsThePlainLoops) {
 TEST_P(Kernels, ThinSumsAsThePlainLoops) {
   simulate::Random random(7);
   const auto sums = running_sums(4000, random);
-  for (const int step : {1, 2, 4}) {
+  for (const int step : {2, 4}) {
     std::vector<std::uint16_t> fast(777 + kTemplateChunk), plain(777);
     thin_sums(sums.data(), step, 777, fast.data());
     thin_sums_plain(sums.data(), step, 777, plain.data());
