@@ -53,15 +53,12 @@ def matches(found, tree):
 def held_out(folder, seed, preset, frames):
     """Folder of `frames` frames, each of a wood of its own, through the invented camera of `seed`;
     rendered when it is not there."""
-    target = folder / f"{preset}_{seed}"
+    target = folder / f"{preset}_{seed}_{frames}"
     if (target / "truth.json").exists():
-        there = len(json.loads((target / "truth.json").read_text())["frames"])
-        if there != frames:
-            sys.exit(f"{target} holds {there} frames, not {frames}: name another folder")
         return target
     parts = []
     for k in range(frames):
-        part = folder / "parts" / f"{preset}_{seed}_{k}"
+        part = folder / "parts" / target.name / str(k)
         # The first frame's seed invents the camera; the others see through it.
         camera = "invented" if k == 0 else parts[0] / "camera.toml"
         run(BOLECTL, "sim", "--out", part, "--frames", 1, "--seed", seed + 1000 * k, "--camera",
