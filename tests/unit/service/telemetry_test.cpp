@@ -104,6 +104,7 @@ TEST(Telemetry, RatesAreOverTheTimeSinceTheLastStatus) {
   telemetry.processed(1'000'000, 0);
   EXPECT_FLOAT_EQ(telemetry.status(now_ns + 2'100'000'000, false).list_rate, 5) << "too soon";
   EXPECT_FLOAT_EQ(telemetry.status(now_ns + 3'000'000'000, false).list_rate, 1);
+  EXPECT_FLOAT_EQ(telemetry.status(now_ns + 4'000'000'000, false).list_rate, 0);
 }
 
 TEST(Telemetry, LatencyIsThatOfTheLastLists) {
