@@ -8,18 +8,6 @@ HWY_BEFORE_NAMESPACE();
 namespace bole::HWY_NAMESPACE {
 namespace {
 
-// The samples of a window, 16 to a row.
-struct WindowSamples {
-  __m512i rows[4];  // four rows each
-
-  // The samples at `place`, for 64 pixels.
-  HWY_INLINE __m512i at(__m512i place) const {
-    const __m512i upper = _mm512_permutex2var_epi8(rows[0], place, rows[1]);
-    const __m512i lower = _mm512_permutex2var_epi8(rows[2], place, rows[3]);
-    return _mm512_mask_blend_epi8(_mm512_movepi8_mask(place), upper, lower);
-  }
-};
-
 HWY_INLINE __m512i two_rows_of_32(const std::uint8_t* from, std::ptrdiff_t stride) {
   const __m256i first = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
   const __m256i second = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from + stride));
@@ -35,36 +23,73 @@ HWY_INLINE __m512i four_rows_of_16(const std::uint8_t* from, std::ptrdiff_t stri
   return _mm512_inserti64x4(_mm512_castsi256_si512(first), second, 1);
 }
 
-// `odd`: of two bytes a pixel, the second is the sample.
+HWY_INLINE __m512i eight_rows_of_8(const std::uint8_t* from, std::ptrdiff_t stride) {
+  const auto two = [&](int i) {
+    const __m128d first = _mm_load_sd(reinterpret_cast<const double*>(from + i * stride));
+    return _mm_castpd_si128(
+        _mm_loadh_pd(first, reinterpret_cast<const double*>(from + (i + 1) * stride)));
+  };
+  const __m256i first = _mm256_inserti128_si256(_mm256_castsi128_si256(two(0)), two(2), 1);
+  const __m256i second = _mm256_inserti128_si256(_mm256_castsi128_si256(two(4)), two(6), 1);
+  return _mm512_inserti64x4(_mm512_castsi256_si512(first), second, 1);
+}
+
+// Of 128 bytes, every other one; `odd`: from the second on.
+HWY_INLINE __m512i every_other(__m512i first, __m512i second, bool odd) {
+  alignas(64) static constexpr auto kEven = [] {
+    std::array<std::uint8_t, 64> even{};
+    for (std::size_t i = 0; i < even.size(); ++i) even[i] = static_cast<std::uint8_t>(2 * i);
+    return even;
+  }();
+  const __m512i pick =
+      _mm512_add_epi8(_mm512_load_si512(kEven.data()), _mm512_set1_epi8(odd ? 1 : 0));
+  return _mm512_permutex2var_epi8(first, pick, second);
+}
+
+// The samples of a window of the smaller side.
 template <int kPixelBytes>
-HWY_INLINE WindowSamples load_window(const std::uint8_t* from, std::ptrdiff_t stride, bool odd) {
-  WindowSamples samples;
-  if constexpr (kPixelBytes == 1) {
-    for (int k = 0; k < 4; ++k) samples.rows[k] = four_rows_of_16(from + 4 * k * stride, stride);
-  } else {
-    // 0, 2, 4 .. 126: of 128 bytes, every other one.
-    alignas(64) static constexpr auto kEven = [] {
-      std::array<std::uint8_t, 64> even{};
-      for (std::size_t i = 0; i < even.size(); ++i) even[i] = static_cast<std::uint8_t>(2 * i);
-      return even;
-    }();
-    const __m512i pick =
-        _mm512_add_epi8(_mm512_load_si512(kEven.data()), _mm512_set1_epi8(odd ? 1 : 0));
-    for (int k = 0; k < 4; ++k) {
-      const std::uint8_t* const rows = from + 4 * k * stride;
-      samples.rows[k] = _mm512_permutex2var_epi8(two_rows_of_32(rows, stride), pick,
-                                                 two_rows_of_32(rows + 2 * stride, stride));
+struct SmallSamples {
+  static constexpr int kSide = WarpWindow::kSmallSide;
+  __m512i samples;
+
+  // `odd`: of two bytes a pixel, the second is the sample.
+  SmallSamples(const std::uint8_t* from, std::ptrdiff_t stride, bool odd)
+      : samples(kPixelBytes == 1 ? eight_rows_of_8(from, stride)
+                                 : every_other(four_rows_of_16(from, stride),
+                                               four_rows_of_16(from + 4 * stride, stride), odd)) {}
+
+  // The samples at `place`, for 64 pixels.
+  HWY_INLINE __m512i at(__m512i place) const { return _mm512_permutexvar_epi8(place, samples); }
+};
+
+// As SmallSamples, of a window of the larger side.
+template <int kPixelBytes>
+struct LargeSamples {
+  static constexpr int kSide = WarpWindow::kSide;
+  __m512i rows[4];  // four rows each
+
+  LargeSamples(const std::uint8_t* from, std::ptrdiff_t stride, bool odd) {
+    for (int k = 0; k < 4; ++k, from += 4 * stride) {
+      rows[k] = kPixelBytes == 1 ? four_rows_of_16(from, stride)
+                                 : every_other(two_rows_of_32(from, stride),
+                                               two_rows_of_32(from + 2 * stride, stride), odd);
     }
   }
-  return samples;
-}
+
+  HWY_INLINE __m512i at(__m512i place) const {
+    const __m512i upper = _mm512_permutex2var_epi8(rows[0], place, rows[1]);
+    const __m512i lower = _mm512_permutex2var_epi8(rows[2], place, rows[3]);
+    return _mm512_mask_blend_epi8(_mm512_movepi8_mask(place), upper, lower);
+  }
+};
 
 struct Halves {  // of each 128 bits of a vector, widened
   __m512i low, high;
 };
 
 // Between neighbours: kWarpSteps times the sample.
-HWY_INLINE Halves across(const WindowSamples& samples, __m512i place, Halves weights) {
+template <class Window>
+HWY_INLINE Halves across(const Window& samples, __m512i place, Halves weights) {
   const __m512i left = samples.at(place);
   const __m512i right = samples.at(_mm512_add_epi8(place, _mm512_set1_epi8(1)));
   return {_mm512_maddubs_epi16(_mm512_unpacklo_epi8(left, right), weights.low),
@@ -78,7 +103,8 @@ HWY_INLINE __m512i down(__m512i above, __m512i below, __m512i step) {
   return _mm512_srli_epi16(_mm512_add_epi16(sum, _mm512_set1_epi16(kWarpSteps / 2)), kWarpBits);
 }
 
-HWY_INLINE __m512i interpolate(const WindowSamples& samples, const WarpWindow& window) {
+template <class Window>
+HWY_INLINE __m512i interpolate(const Window& samples, const WarpWindow& window) {
   const __m512i place = _mm512_load_si512(window.place.data());
   const __m512i u = _mm512_load_si512(window.column_step.data());
   const __m512i v = _mm512_load_si512(window.row_step.data());
@@ -86,7 +112,7 @@ HWY_INLINE __m512i interpolate(const WindowSamples& samples, const WarpWindow& w
   const Halves weights{_mm512_unpacklo_epi8(rest, u), _mm512_unpackhi_epi8(rest, u)};
   const Halves above = across(samples, place, weights);
   const Halves below =
-      across(samples, _mm512_add_epi8(place, _mm512_set1_epi8(WarpWindow::kSide)), weights);
+      across(samples, _mm512_add_epi8(place, _mm512_set1_epi8(Window::kSide)), weights);
   // Bytes put in the upper half of 16 bits are times 2^8.
   const __m512i zero = _mm512_setzero_si512(), v2 = _mm512_add_epi8(v, v);
   return _mm512_packus_epi16(down(above.low, below.low, _mm512_unpacklo_epi8(zero, v2)),
@@ -114,27 +140,35 @@ HWY_INLINE void store_all_rows(__m512i pixels, WarpOutput out) {
 }
 
 // Half a tile, out of one of its windows.
-template <int kPixelBytes>
+template <class Window, int kPixelBytes>
 HWY_INLINE __m512i pick(const SampledImage& image, WarpWindows::Origin origin,
                         const WarpWindow& window) {
   const auto* const bytes = reinterpret_cast<const std::uint8_t*>(image.bytes.data());
   const std::ptrdiff_t stride = image.stride;
   const std::uint8_t* const from = bytes + origin.row * stride + origin.column * kPixelBytes;
-  return interpolate(load_window<kPixelBytes>(from, stride, image.lead == 1), window);
+  return interpolate(Window(from, stride, image.lead == 1), window);
+}
+
+// Half a tile.
+template <int kPixelBytes>
+HWY_INLINE __m512i pick_half(const SampledImage& image, const WarpWindows::Half& half,
+                             const WarpWindow& window) {
+  using Small = SmallSamples<kPixelBytes>;
+  using Large = LargeSamples<kPixelBytes>;
+  if (half.small) return pick<Small, kPixelBytes>(image, half.left, window);
+  const __m512i left = pick<Large, kPixelBytes>(image, half.left, window);
+  if (half.right == half.left) return left;
+  constexpr __mmask64 kRightColumns = 0xf0f0f0f0f0f0f0f0;  // of each row's eight
+  return _mm512_mask_blend_epi8(kRightColumns, left,
+                                pick<Large, kPixelBytes>(image, half.right, window));
 }
 
 // Tile number `tile` of the strip, one of those that fit.
 template <int kPixelBytes>
 HWY_INLINE void warp_tile_by_windows(const WarpStrip& strip, std::size_t number, int tile) {
   for (int half = 0; half < 2; ++half) {
-    const auto [left, right] = strip.windows.tile(number).halves[static_cast<std::size_t>(half)];
-    const WarpWindow& window = strip.windows.windows(number)[half];
-    __m512i pixels = pick<kPixelBytes>(strip.image, left, window);
-    if (right != left) {
-      constexpr __mmask64 kRightColumns = 0xf0f0f0f0f0f0f0f0;  // of each row's eight
-      pixels = _mm512_mask_blend_epi8(kRightColumns, pixels,
-                                      pick<kPixelBytes>(strip.image, right, window));
-    }
+    const __m512i pixels = pick_half<kPixelBytes>(
+        strip.image, strip.windows.tile(number).halves[half], strip.windows.windows(number)[half]);
     const WarpOutput out{strip.out.pixels + tile * kTileColumns + half * WarpWindow::kColumns,
                          strip.out.stride};
     if (strip.rows == kTileRows) {

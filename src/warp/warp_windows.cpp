@@ -6,8 +6,6 @@
 namespace bole {
 namespace {
 
-constexpr int kSide = WarpWindow::kSide;
-
 struct Place {
   int row, column;
 };
@@ -36,14 +34,14 @@ void for_each_source(const WarpTile& tile, const WarpEntry* entries, Columns col
 
 // A window that holds all sources of these columns; none where they lie too far apart.
 std::optional<WarpWindows::Origin> window_about(const WarpTile& tile, const WarpEntry* entries,
-                                                Columns columns, ImageSize size) {
-  Place first{size.height - kSide, size.width - kSide}, last{0, 0};
+                                                Columns columns, ImageSize size, int side) {
+  Place first{size.height - side, size.width - side}, last{0, 0};
   for_each_source(tile, entries, columns, [&](std::size_t, WarpEntry, Place place) {
     first = {std::min(first.row, place.row), std::min(first.column, place.column)};
     last = {std::max(last.row, place.row), std::max(last.column, place.column)};
   });
-  if (first.row < 0 || first.column < 0 || last.row + 1 >= first.row + kSide ||
-      last.column + 1 >= first.column + kSide) {
+  if (first.row < 0 || first.column < 0 || last.row + 1 >= first.row + side ||
+      last.column + 1 >= first.column + side) {
     return std::nullopt;
   }
   return WarpWindows::Origin{static_cast<std::uint16_t>(first.row),
@@ -51,10 +49,10 @@ std::optional<WarpWindows::Origin> window_about(const WarpTile& tile, const Warp
 }
 
 void fill(const WarpTile& tile, const WarpEntry* entries, Columns columns,
-          WarpWindows::Origin origin, WarpWindow& window) {
+          WarpWindows::Origin origin, int side, WarpWindow& window) {
   for_each_source(tile, entries, columns, [&](std::size_t pixel, WarpEntry entry, Place place) {
     window.place[pixel] =
-        static_cast<std::uint8_t>(kSide * (place.row - origin.row) + place.column - origin.column);
+        static_cast<std::uint8_t>(side * (place.row - origin.row) + place.column - origin.column);
     window.column_step[pixel] = static_cast<std::uint8_t>(entry % kWarpSteps);
     window.row_step[pixel] = static_cast<std::uint8_t>((entry >> 16) % kWarpSteps);
   });
@@ -63,13 +61,19 @@ void fill(const WarpTile& tile, const WarpEntry* entries, Columns columns,
 // Fills `window` for the columns from `start` on; nothing when two windows do not suffice.
 std::optional<WarpWindows::Half> fill_half(const WarpTile& tile, const WarpEntry* entries,
                                            int start, ImageSize size, WarpWindow& window) {
+  constexpr int kSmall = WarpWindow::kSmallSide, kSide = WarpWindow::kSide;
   const int middle = start + WarpWindow::kColumns / 2, end = start + WarpWindow::kColumns;
-  const auto whole = window_about(tile, entries, {start, end}, size);
-  const auto left = whole ? whole : window_about(tile, entries, {start, middle}, size);
-  const auto right = whole ? whole : window_about(tile, entries, {middle, end}, size);
+  const Columns both{start, end};
+  if (const auto small = window_about(tile, entries, both, size, kSmall)) {
+    fill(tile, entries, both, *small, kSmall, window);
+    return WarpWindows::Half{*small, *small, true};
+  }
+  const auto whole = window_about(tile, entries, both, size, kSide);
+  const auto left = whole ? whole : window_about(tile, entries, {start, middle}, size, kSide);
+  const auto right = whole ? whole : window_about(tile, entries, {middle, end}, size, kSide);
   if (!left || !right) return std::nullopt;
-  fill(tile, entries, {start, middle}, *left, window);
-  fill(tile, entries, {middle, end}, *right, window);
+  fill(tile, entries, {start, middle}, *left, kSide, window);
+  fill(tile, entries, {middle, end}, *right, kSide, window);
   return WarpWindows::Half{*left, *right};
 }
 

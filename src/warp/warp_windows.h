@@ -8,16 +8,16 @@
 
 namespace bole {
 
-/// The sources of half a tile, eight by eight panorama pixels, that lie in a window of 16 x 16
-/// source pixels, or in two, one for the left four columns and one for the right four. A processor
-/// that can look bytes up in 256 of them at once (see warp_rows.cpp) reads a window once and picks
-/// all pixels out of it.
+/// The sources of half a tile, eight by eight panorama pixels, that lie in a window of 8 x 8 or
+/// 16 x 16 source pixels, or in two of the latter, one for the left four columns and one for the
+/// right four. A processor that can look bytes up in 64 or 256 of them at once (see warp_rows.cpp)
+/// reads a window once and picks all pixels out of it.
 struct alignas(64) WarpWindow {
-  static constexpr int kSide = 16;    ///< of the window, source pixels
-  static constexpr int kColumns = 8;  ///< of the half tile
+  static constexpr int kSmallSide = 8, kSide = 16;  ///< of the window, source pixels
+  static constexpr int kColumns = 8;                ///< of the half tile
   static constexpr int kPixels = kTileRows * kColumns;
 
-  /// Of each pixel, row by row: the first of its four source samples, 16 row + column within the
+  /// Of each pixel, row by row: the first of its four source samples, side row + column within the
   /// window, and how far from it the source lies, in steps.
   std::array<std::uint8_t, kPixels> place, column_step, row_step;
 };
@@ -36,6 +36,7 @@ class WarpWindows {
   };
   struct Half {
     Origin left, right;  ///< of the windows; the same where one is enough
+    bool small = false;  ///< one window of the smaller side
   };
   struct Tile {
     bool fits = false;
