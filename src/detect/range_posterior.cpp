@@ -83,13 +83,22 @@ double RangePosterior::log_likelihood(const TrunkSight& sight) const {
   return std::log(std::accumulate(p.weight.begin(), p.weight.end(), 1e-30));
 }
 
+double RangePosterior::log_likelihood_of_searched(const TrunkSight& sight) const {
+  const Points p = only_searched(points(sight), std::sin(sight.angular_width / 2));
+  return std::log(std::accumulate(p.weight.begin(), p.weight.end(), 1e-30));
+}
+
+RangePosterior::Points RangePosterior::only_searched(Points p, double s) const {
+  for (int i = 0; i < kSteps; ++i)
+    if (!is_searched(p.range[i], 2 * p.range[i] * s)) p.weight[i] = 0;
+  return p;
+}
+
 RangeEstimate RangePosterior::estimate(const TrunkSight& sight) const {
   const Points everywhere = points(sight);
   const double s = std::sin(sight.angular_width / 2);
   const double all = std::accumulate(everywhere.weight.begin(), everywhere.weight.end(), 1e-30);
-  Points p = everywhere;  // then only what is searched
-  for (int i = 0; i < kSteps; ++i)
-    if (!is_searched(p.range[i], 2 * p.range[i] * s)) p.weight[i] = 0;
+  const Points p = only_searched(everywhere, s);
   const double even = std::accumulate(p.weight.begin(), p.weight.begin() + kEvenSteps, 0.0);
   const double searched = std::accumulate(p.weight.begin() + kEvenSteps, p.weight.end(), even);
   if (searched <= 0) return {};

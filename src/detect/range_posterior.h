@@ -39,6 +39,10 @@ class RangePosterior {
   /// between sights of one width.
   double log_likelihood(const TrunkSight& sight) const;
 
+  /// The logarithm of the likelihood that one of the searched trunks has this width and its foot
+  /// there, but for a constant; -69 where none can.
+  double log_likelihood_of_searched(const TrunkSight& sight) const;
+
  private:
   static constexpr int kEvenSteps = 13, kRoughSteps = 40;
   static constexpr int kSteps = kEvenSteps + kRoughSteps;
@@ -47,6 +51,7 @@ class RangePosterior {
   };
 
   Points points(const TrunkSight& sight) const;
+  Points only_searched(Points points, double s) const;
   static double half_of_95_percent(const Points& points, double mean, double mass);
   bool is_searched(double range, double diameter) const;
 

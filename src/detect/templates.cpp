@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "detect/range_posterior.h"
 #include "detect/rounding.h"
 #include "detect/template_kernels.h"
 #include "geometry/ground.h"
@@ -15,10 +16,13 @@ namespace {
 constexpr double kContrast = 0.20;  // of log brightness: full contrast
 constexpr int kLeastEvidence = 96;  // of a candidate
 constexpr double kWidthStep = 1.15;
-constexpr double kNarrowest = 4;  // columns
-constexpr int kWidestFlank = 28;  // columns
-constexpr int kWidestStep = 4;    // columns from one left edge to the next
-constexpr double kSlope = 0.30;   // rising ground shifts feet by up to this tangent
+constexpr double kNarrowest = 4;       // columns
+constexpr int kWidestFlank = 28;       // columns
+constexpr int kWidestStep = 4;         // columns from one left edge to the next
+constexpr double kSlope = 0.30;        // rising ground shifts feet by up to this tangent
+constexpr double kFootSigma = 0.10;    // tangent, of the foot that evidence ends at
+constexpr double kRankByWidth = -0.4;  // powers beside the evidence
+constexpr double kRankByPlace = 0.15;
 
 // To the nearest whole number; columns stay far from the limits.
 int rounded(double x) { return static_cast<int>(x + (kFar + 0.5)) - static_cast<int>(kFar); }
@@ -55,6 +59,7 @@ Templates::Templates(const DetectorSetup& setup, const Bands& bands, int most_ca
 
   for (const int width : {2, 3, 5, 8, 12, 16, kWidestFlank}) add_flank(bands, width);
   const Search& search = setup.search;
+  const RangePosterior posterior(setup.height, search);
   const double narrowest =
       std::max(kNarrowest, 0.85 * focal_ * angular_width(search.diameter.low, search.range.high));
   int last = 0;
@@ -82,8 +87,9 @@ Templates::Templates(const DetectorSetup& setup, const Bands& bands, int most_ca
     const double down = setup.height / std::max(0.5 * nearest_range, nearest_range * (1 - s));
     size.first_foot = static_cast<int>(band_of_tangent(-kSlope));
     size.last_foot = static_cast<int>(std::ceil(band_of_tangent(1.15 * down + 0.05)));
-    size.rank_factor = std::pow(size.width, -0.4);
-    if (size.last_foot > size.first_foot) sizes_.push_back(size);
+    if (size.last_foot <= size.first_foot) continue;
+    weigh_feet(posterior, horizon, size);
+    sizes_.push_back(std::move(size));
   }
   for (auto& peaks : peaks_) {
     peaks.resize(sizes_.size());
@@ -98,6 +104,19 @@ Templates::Templates(const DetectorSetup& setup, const Bands& bands, int most_ca
   found_.reserve(20000);
   kept_.reserve(most_);
   earlier_in_part_.reserve(most_);
+}
+
+// How much the place of a foot counts in a candidate's rank, by the band that the trunk ends in.
+// The ground need not be level, and the foot is coarse yet: little.
+void Templates::weigh_feet(const RangePosterior& posterior, double horizon, Size& size) const {
+  for (int band = 0; band < bands_; ++band) {
+    const double likelihood = posterior.log_likelihood_of_searched(
+        {.down = ((band + 1) * Bands::kRows - horizon) / focal_,
+         .down_sigma = kFootSigma,
+         .angular_width = size.width / focal_});
+    size.rank_factors.push_back(std::pow(size.width, kRankByWidth) *
+                                std::exp(kRankByPlace * likelihood));
+  }
 }
 
 void Templates::add_flank(const Bands& bands, int width) {
@@ -237,7 +256,7 @@ void Templates::collect(int size_index, int polarity) {
     if (found_.size() == found_.capacity()) return;
     found_.push_back({static_cast<float>(i * step), static_cast<float>(size.width),
                       static_cast<float>(peaks.foot[i] * Bands::kRows), polarity == 0,
-                      static_cast<float>(evidence * size.rank_factor)});
+                      static_cast<float>(evidence * size.rank_factors[peaks.foot[i] - 1])});
   }
 }
 

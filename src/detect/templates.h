@@ -7,6 +7,7 @@
 
 #include "detect/bands.h"
 #include "detect/detector.h"
+#include "detect/range_posterior.h"
 
 namespace bole {
 
@@ -35,15 +36,15 @@ class Templates {
   /// Of `bands` only what is seen and the margin are asked for.
   Templates(const DetectorSetup& setup, const Bands& bands, int most_candidates);
 
-  /// The most evident places, best first; valid until the next call.
+  /// The places of highest rank, best first; valid until the next call.
   std::span<const Candidate> find(const Bands& bands);
 
  private:
   struct Size {
-    int width = 0;  // columns
-    int flank = 0;  // index into flanks_
-    double rank_factor = 1;
+    int width = 0;                      // columns
+    int flank = 0;                      // index into flanks_
     int first_foot = 0, last_foot = 0;  // bands: the foot is the lower border of one of them
+    std::vector<double> rank_factors;   // of evidence, by the band that it ends in
   };
   struct Unseen {  // evaluated columns [first, last) of a band where a mean meets the mask
     int band = 0, first = 0, last = 0;
@@ -66,6 +67,7 @@ class Templates {
     bool beats(int left, int evidence_there) const;
   };
 
+  void weigh_feet(const RangePosterior& posterior, double horizon, Size& size) const;
   void add_flank(const Bands& bands, int width);
   int thinned_pitch(int step) const;
   void thin(const Bands& bands, int step);

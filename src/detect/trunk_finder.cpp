@@ -29,7 +29,7 @@ Effort Effort::for_reach(double range) {
   constexpr double kShort = 8, kLong = 40;  // metres
   const double far = std::clamp((range - kShort) / (kLong - kShort), 0.0, 1.0);
   const auto between = [far](double low, double high) { return low + far * (high - low); };
-  return {.candidates = static_cast<int>(between(190, 2000)),
+  return {.candidates = static_cast<int>(between(150, 1400)),
           .close_looks = static_cast<int>(between(5, 150)),
           .worth_other_feet = static_cast<float>(between(-5, -7.5)),
           .worth_a_second_look = static_cast<float>(between(-3, -5)),
