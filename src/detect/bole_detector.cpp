@@ -7,6 +7,7 @@
 
 #include "detect/ground_tilt.h"
 #include "detect/range_posterior.h"
+#include "detect/tilt_witness.h"
 #include "detect/trunk_finder.h"
 
 namespace bole {
@@ -15,9 +16,6 @@ namespace {
 constexpr float kLeastScore = 0.05F;
 constexpr float kHardly = 0.02F;  // probability that is not worth a place
 constexpr std::size_t kMostExpected = 64;
-constexpr float kWitness = 0.3F;  // probability of a trunk that tells of the ground's tilt
-
-float probability(double logit) { return static_cast<float>(1 / (1 + std::exp(-logit))); }
 
 // What scripts/calibration fits on drives through cameras that nothing was trained on. Where many
 // trees are seen, what looks a little like one is one more often than elsewhere; `seen` is how many
@@ -66,7 +64,6 @@ class BoleDetector final : public Detector {
   }
 
   void outline(std::span<const ExpectedTrunk> expected);
-  TrunkSight sight_of(const Trunk& trunk) const;
   GroundTilt tilt_of(std::span<const Trunk> trunks);
   Tree tree_of(const Trunk& trunk, const GroundTilt& tilt) const;
 
@@ -96,24 +93,11 @@ void BoleDetector::outline(std::span<const ExpectedTrunk> expected) {
   }
 }
 
-TrunkSight BoleDetector::sight_of(const Trunk& trunk) const {
-  const double focal = panorama_.focal();
-  return {.down = -panorama_.tangent_of_row(trunk.shape.foot - 0.5),
-          .down_sigma = trunk.foot_sigma / focal,
-          .angular_width = std::clamp(trunk.shape.width() / focal, 1e-3, 2.5),
-          .cut = trunk.cut};
-}
-
 GroundTilt BoleDetector::tilt_of(std::span<const Trunk> trunks) {
   witnesses_.clear();
   for (const Trunk& trunk : trunks) {
-    if (trunk.cut || probability(trunk.logit) < kWitness ||
-        witnesses_.size() == witnesses_.capacity())
-      continue;
-    witnesses_.push_back({.bearing = panorama_.bearing_of_column(trunk.shape.centre() - 0.5),
-                          .sight = sight_of(trunk),
-                          .lean = trunk.shape.slope(),
-                          .weight = probability(trunk.logit)});
+    if (witnesses_.size() == witnesses_.capacity()) break;
+    if (const auto witness = witness_of(trunk, panorama_)) witnesses_.push_back(*witness);
   }
   return tilt_.estimate(witnesses_);
 }
@@ -122,7 +106,7 @@ Tree BoleDetector::tree_of(const Trunk& trunk, const GroundTilt& tilt) const {
   const TrunkShape& shape = trunk.shape;
   const double focal = panorama_.focal();
   const double bearing = panorama_.bearing_of_column(shape.centre() - 0.5);
-  const TrunkSight seen = sight_of(trunk);
+  const TrunkSight seen = sight_of(trunk, panorama_);
   const double raised = tilt.raise(bearing);
   TrunkSight level = seen;
   level.down += raised;
