@@ -9,6 +9,7 @@ void add_commands(CLI::App& app) {
   app.final_callback([&app] {
     if (app.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
   });
+  bole::add_calib(app);
   bole::add_cameras(app);
   bole::add_detect(app);
   bole::add_doctor(app);

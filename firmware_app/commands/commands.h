@@ -7,6 +7,7 @@ namespace bole {
 // Each adds one subcommand of bolectl with its options and what it does. A command that fails
 // throws: ConfigError for exit code 2, any other exception for 1.
 
+void add_calib(CLI::App& app);
 void add_cameras(CLI::App& app);
 void add_detect(CLI::App& app);
 void add_doctor(CLI::App& app);

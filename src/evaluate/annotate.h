@@ -28,8 +28,8 @@ struct TrunkMark {
 /// A detected tree in the colour of its score, with its score and its range.
 TrunkMark mark_of(const Tree& tree);
 
-/// The panorama, twice its size, with the ground's lines at whole metres and the marked trunks'
-/// rectangles from the foot up.
+/// The panorama, twice its size, with the horizon, the ground's lines at whole metres and the
+/// marked trunks' rectangles from the foot up.
 cv::Mat3b draw_panorama(const Camera& camera, const WarpTable& table, const cv::Mat3b& picture,
                         std::span<const TrunkMark> marks);
 
@@ -43,6 +43,12 @@ cv::Mat3b draw_polar_map(const Search& search, std::span<const Tree> trees);
 
 /// Writes a PNG file. Throws ConfigError when that fails.
 void write_picture(const std::filesystem::path& file, const cv::Mat3b& picture);
+
+/// Writes the first two as PNG: <folder>/<name>_panorama.png, _raw.png. Throws ConfigError when
+/// that fails.
+void write_frame_annotations(const std::filesystem::path& folder, const std::string& name,
+                             const Camera& camera, const WarpTable& table, const cv::Mat3b& picture,
+                             std::span<const Tree> trees);
 
 /// Writes all three as PNG: <folder>/<name>_panorama.png, _raw.png, _map.png. Throws
 /// ConfigError when that fails.

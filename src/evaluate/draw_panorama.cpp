@@ -11,7 +11,6 @@ namespace bole {
 namespace {
 
 constexpr double kScale = 2;
-const Colour kGround(230, 220, 170);
 
 // Where a place of the panorama, its pixel centres at whole numbers, lies in the picture.
 cv::Point2d at(double column, double row) {
@@ -44,6 +43,13 @@ void draw_depths(cv::Mat3b& canvas, Labels& labels, const PanoramaGeometry& pano
   for (const auto& [depth, row] : drawn) {
     labels.add(fixed(depth, 0) + " m", at(14, row + 4), kGround, 0.4);
   }
+}
+
+void draw_horizon(cv::Mat3b& canvas, Labels& labels, const PanoramaGeometry& panorama) {
+  const double row = panorama.horizon_row();
+  if (row < 0 || row > panorama.rows - 1) return;
+  draw_line(canvas, {at(-0.5, row), at(panorama.width, row)}, kHorizon);
+  labels.add("horizon", at(24, row - 2), kHorizon, 0.4);
 }
 
 // The rectangle from the foot to the top of the picture, once more a turn on where it crosses the
@@ -88,6 +94,7 @@ cv::Mat3b draw_panorama(const Camera& camera, const WarpTable& table, const cv::
   darken_unseen(canvas, table);
   Labels labels(canvas);
   draw_depths(canvas, labels, panorama, camera);
+  draw_horizon(canvas, labels, panorama);
   for (const TrunkMark& mark : marks) draw_trunk(canvas, panorama, mark);
   for (const TrunkMark& mark : marks) draw_labels(labels, panorama, mark);
   return canvas;

@@ -12,8 +12,6 @@
 namespace bole {
 namespace {
 
-const Colour kGround(230, 220, 170);
-
 // Draws what lies in directions of the robot frame onto the raw image.
 class RawCanvas {
  public:
@@ -82,6 +80,22 @@ void draw_depths(RawCanvas& raw, const Camera& camera) {
   cv::addWeighted(lines, 0.5, raw.canvas(), 0.5, 0, raw.canvas());
 }
 
+void draw_horizon(RawCanvas& raw) {
+  raw.draw(raw.canvas(), {{-kPi, 0}, {kPi, 0}}, kHorizon, 1, false);
+}
+
+// Where nothing else is written: half left of forward.
+void label_lines(const RawCanvas& raw, Labels& labels, const Camera& camera) {
+  const double bearing = kPi / 4;
+  if (const auto p = raw.place(bearing, 0)) labels.add("horizon", *p, kHorizon, 0.42);
+  for (const double depth : marked_distances(0, camera.config.search.range.high)) {
+    const double tangent = ground_tangent(depth, camera.config.mount.height);
+    if (const auto p = raw.place(bearing, tangent)) {
+      labels.add(fixed(depth, 0) + " m", *p, kGround, 0.42);
+    }
+  }
+}
+
 void name_directions(const RawCanvas& raw, Labels& labels, const Camera& camera) {
   // Over the ground nearest to the robot that is seen for certain.
   const double tangent = ground_tangent(1.15 * camera.config.range_min, camera.config.mount.height);
@@ -96,6 +110,7 @@ void name_directions(const RawCanvas& raw, Labels& labels, const Camera& camera)
 cv::Mat3b draw_raw(const Camera& camera, const cv::Mat3b& picture, std::span<const Tree> trees) {
   RawCanvas raw(camera, picture);
   draw_depths(raw, camera);
+  draw_horizon(raw);
   const double top = std::tan(camera.config.elevation_top);
   for (const Tree& tree : trees) {
     const double left = tree.bearing + tree.angular_width / 2.0;
@@ -111,6 +126,7 @@ cv::Mat3b draw_raw(const Camera& camera, const cv::Mat3b& picture, std::span<con
       labels.add(fixed(tree.score, 2), *p, colour_of_score(tree.score), 0.42);
     }
   }
+  label_lines(raw, labels, camera);
   return raw.canvas();
 }
 

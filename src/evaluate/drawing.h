@@ -10,6 +10,9 @@ namespace bole {
 /// Colours are blue, green, red, as OpenCV has them.
 using Colour = cv::Scalar;
 
+/// Of lines on the ground, and of the horizon.
+inline const Colour kGround(230, 220, 170), kHorizon(255, 170, 60);
+
 /// From amber for trees that hardly are any to bright green for certain ones.
 Colour colour_of_score(double score);
 

@@ -26,7 +26,7 @@ struct CameraConfig {
   double horizontal_fov = 0;          ///< radians; a pinhole without a calibration
   ImageSize size;                     ///< the same
   std::optional<double> horizon_row;  ///< of a pinhole, in place of the mount's pitch
-  Mount mount;
+  Mount mount;  ///< its pitch, where horizon_row stands for it, is load_camera's to find
   int columns = 1440;
   double elevation_top = 0;  ///< radians
   double range_min = 0.9;    ///< metres: the panorama's lower border

@@ -1,5 +1,8 @@
 #include "geometry/mount.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <cmath>
 
 namespace bole {
@@ -39,6 +42,19 @@ Mat3 robot_from_forward_camera(const Mount& mount) {
 double pitch_of_forward_camera(const Vec3& ray, double roll) {
   const double up = -ray.x * std::sin(roll) - ray.y * std::cos(roll);
   return std::atan2(up, ray.z);
+}
+
+Vec3 level_ray_of_forward_camera(const Mount& mount) {
+  const Vec3 up = robot_from_forward_camera(mount).rows[2];
+  return normalized({0, up.y < 0 ? up.z : -up.z, std::abs(up.y)});
+}
+
+Mount levelled(const Mount& mount, const Vec3& up) {
+  const Vec3 v = normalized(transposed(small_rotation(mount)) * up);
+  Mount result = mount;
+  result.pitch = std::asin(std::clamp(-v.x, -1.0, 1.0));
+  result.roll = std::atan2(v.y, v.z);
+  return result;
 }
 
 }  // namespace bole

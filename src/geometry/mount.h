@@ -29,4 +29,14 @@ Mat3 robot_from_forward_camera(const Mount& mount);
 /// own frame) is level.
 double pitch_of_forward_camera(const Vec3& ray, double roll);
 
+/// The inverse: the ray (in the camera's own frame) that is level and lies in the plane of the
+/// optical axis and the image's column, where the image's horizon crosses its middle column.
+Vec3 level_ray_of_forward_camera(const Mount& mount);
+
+/// The mount with the roll and pitch under which `up`, a direction in the robot frame that `mount`
+/// leads to, is the vertical; yaw, height and sides stay. With S = Ry(pitch) Rx(roll), the third
+/// row of the new S is the vertical as it stands between the sides and the rotations, S' Rz(-yaw)
+/// up.
+Mount levelled(const Mount& mount, const Vec3& up);
+
 }  // namespace bole

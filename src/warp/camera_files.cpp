@@ -12,30 +12,25 @@ namespace {
 
 constexpr std::size_t kLargestText = 1u << 20;
 
-struct Optics {
-  std::unique_ptr<const CameraModel> model;
-  Mat3 robot_from_camera;
-};
-
-Optics forward_optics(PinholeModel model, const CameraConfig& config) {
-  Mount mount = config.mount;
-  if (config.horizon_row) {
-    const Pixel horizon{*config.horizon_row, model.parameters().centre_column};
-    mount.pitch = pitch_of_forward_camera(model.ray_from_pixel(horizon), mount.roll);
-  }
-  return {std::make_unique<PinholeModel>(std::move(model)), robot_from_forward_camera(mount)};
+PinholeModel pinhole_of(const CameraConfig& config, const std::string& calibration_text,
+                        const std::string& calibration_file) {
+  return config.calibration.empty() ? pinhole_from_field_of_view(config.horizontal_fov, config.size)
+                                    : parse_pinhole(calibration_text, calibration_file);
 }
 
-Optics optics_of(const CameraConfig& config, const std::string& calibration_text,
-                 const std::string& calibration_file) {
+std::unique_ptr<const CameraModel> model_of(CameraConfig& config,
+                                            const std::string& calibration_text,
+                                            const std::string& calibration_file) {
   if (config.model == CameraConfig::Model::ocam) {
-    return {std::make_unique<OcamModel>(parse_ocam(calibration_text, calibration_file)),
-            robot_from_omni_camera(config.mount)};
+    return std::make_unique<OcamModel>(parse_ocam(calibration_text, calibration_file));
   }
-  return forward_optics(config.calibration.empty()
-                            ? pinhole_from_field_of_view(config.horizontal_fov, config.size)
-                            : parse_pinhole(calibration_text, calibration_file),
-                        config);
+  auto model =
+      std::make_unique<PinholeModel>(pinhole_of(config, calibration_text, calibration_file));
+  if (config.horizon_row) {
+    const Pixel horizon{*config.horizon_row, model->parameters().centre_column};
+    config.mount.pitch = pitch_of_forward_camera(model->ray_from_pixel(horizon), config.mount.roll);
+  }
+  return model;
 }
 
 // Lengths are part of it, so that no byte can move from one file to the next unseen.
@@ -64,14 +59,20 @@ Camera load_camera(const std::filesystem::path& camera_toml) {
   if (!camera.config.calibration.empty()) {
     camera.calibration_text = read_text_file(calibration, kLargestText);
   }
-  Optics optics = optics_of(camera.config, camera.calibration_text, calibration);
-  camera.model = std::move(optics.model);
-  camera.robot_from_camera = optics.robot_from_camera;
+  camera.model = model_of(camera.config, camera.calibration_text, calibration);
+  remount(camera, camera.config.mount);
   if (!camera.config.mask.empty()) {
     camera.mask = read_mask(folder / camera.config.mask, camera.model->image_size());
   }
   camera.digest = digest_of(camera);
   return camera;
+}
+
+void remount(Camera& camera, const Mount& mount) {
+  camera.config.mount = mount;
+  camera.robot_from_camera = camera.config.model == CameraConfig::Model::ocam
+                                 ? robot_from_omni_camera(mount)
+                                 : robot_from_forward_camera(mount);
 }
 
 }  // namespace bole

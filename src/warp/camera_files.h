@@ -29,4 +29,7 @@ struct Camera {
 /// ConfigError for whatever is missing, damaged or does not fit.
 Camera load_camera(const std::filesystem::path& camera_toml);
 
+/// Holds the camera otherwise. Its digest stays: tables made from now on are not for the cache.
+void remount(Camera& camera, const Mount& mount);
+
 }  // namespace bole

@@ -1,15 +1,13 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
-#include <string_view>
-#include <system_error>
 
 #include "base/errors.h"
+#include "capture/replay/frame_names.h"
 #include "capture/replay/image_file.h"
 #include "capture/replay/jpeg.h"
 #include "capture/replay/media.h"
-#include "capture/replay/names.h"
 #include "capture/replay/timestamps.h"
 
 namespace bole {
@@ -24,48 +22,14 @@ struct FrameFile {
   std::int64_t utime_us = 0;
 };
 
-std::optional<PixelFormat> raw_format(const fs::path& path) {
-  return pixel_format_from_name(lower_ending(path));
-}
-
 FrameFile frame_file(const fs::path& path) {
   return {path, path.filename().string(), raw_format(path)};
 }
 
-bool is_frame_name(const fs::path& path) {
-  constexpr std::array<std::string_view, 9> kEndings = {"png", "jpg", "jpeg", "bmp", "pgm",
-                                                        "ppm", "tif", "tiff", "webp"};
-  if (path.filename().string().starts_with('.')) return false;
-  return raw_format(path) || std::ranges::find(kEndings, lower_ending(path)) != kEndings.end();
-}
-
-bool is_mask(const fs::path& path, const fs::path& mask) {
-  if (mask.empty()) return false;
-  std::error_code not_there;
-  return path.filename() == mask.filename() || fs::equivalent(path, mask, not_there);
-}
-
 std::vector<FrameFile> list_folder(const ReplayOptions& options) {
   std::vector<FrameFile> files;
-  std::error_code error;
-  for (fs::directory_iterator entry(options.path, error), end; !error && entry != end;
-       entry.increment(error)) {
-    const fs::path& path = entry->path();
-    std::error_code vanished;
-    if (is_frame_name(path) && !is_mask(path, options.mask) && !fs::is_directory(path, vanished)) {
-      files.push_back(frame_file(path));
-    }
-  }
-  if (error) {
-    throw ConfigError(options.path, "", "cannot be listed: " + error.message(),
-                      "give a folder that may be read");
-  }
-  if (files.empty()) {
-    throw ConfigError(
-        options.path, "", "holds no frame",
-        "give a folder of images (png, jpg ...) or raw frames (yuyv, nv12, grey ...)");
-  }
-  std::ranges::sort(files, {}, &FrameFile::name);
+  std::ranges::transform(frames_in(options.path, options.mask), std::back_inserter(files),
+                         frame_file);
   return files;
 }
 

@@ -80,5 +80,40 @@ TEST(Mount, ThePitchOfTheHorizonMakesItsRayLevel) {
   EXPECT_LT(pitch_of_forward_camera({0, 0.2, 1}, 0), 0);
 }
 
+TEST(Mount, TheLevelRayOfACameraThatLooksAheadLiesInItsMiddleColumn) {
+  for (const double roll : {0.0, 0.2, -0.4}) {
+    for (const double pitch : {0.0, 0.3, -0.1}) {
+      const Mount mount{.roll = roll, .pitch = pitch};
+      const Vec3 ray = level_ray_of_forward_camera(mount);
+      EXPECT_EQ(ray.x, 0);
+      EXPECT_GT(ray.z, 0);
+      EXPECT_NEAR((robot_from_forward_camera(mount) * ray).z, 0, 1e-12);
+      EXPECT_NEAR(pitch_of_forward_camera(ray, roll), pitch, 1e-12);
+    }
+  }
+}
+
+// Whatever the true mount: what it says is up, seen through the wrong mount, leads back to it.
+TEST(Mount, IsLevelledByWhatIsUp) {
+  for (const bool mirrored : {false, true}) {
+    for (const bool down : {true, false}) {
+      const ImageSide left = mirrored ? ImageSide::right : ImageSide::left;
+      for (const double yaw : {0.0, 2.2, -1.3}) {
+        const Mount truth{
+            .left = left, .centre_looks_down = down, .roll = 0.05, .pitch = -0.03, .yaw = yaw};
+        Mount wrong = truth;
+        wrong.roll -= 0.08;
+        wrong.pitch += 0.06;
+        const Vec3 up = robot_from_omni_camera(wrong) *
+                        (transposed(robot_from_omni_camera(truth)) * Vec3{0, 0, 1});
+        const Mount mended = levelled(wrong, up);
+        EXPECT_NEAR(mended.roll, truth.roll, 1e-12);
+        EXPECT_NEAR(mended.pitch, truth.pitch, 1e-12);
+        EXPECT_EQ(mended.yaw, yaw);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace bole

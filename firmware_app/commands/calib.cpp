@@ -1,0 +1,209 @@
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+
+#include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
+
+#include "base/errors.h"
+#include "capture/replay/frame_names.h"
+#include "commands/commands.h"
+#include "commands/progress.h"
+#include "evaluate/annotate.h"
+#include "evaluate/camera_check.h"
+#include "evaluate/image_detector.h"
+#include "evaluate/mount_calibration.h"
+#include "geometry/angles.h"
+#include "warp/table_cache.h"
+
+namespace bole {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string camera;
+  std::string annotate;
+  std::vector<std::string> images;  // of mount: folders too
+  std::vector<std::string> trees;
+  bool json = false;
+};
+
+void annotate(const Options& options, const Camera& camera, const WarpTable& table) {
+  Warper warper(table);
+  for (const fs::path image : options.images) {
+    try {
+      const cv::Mat3b picture = read_picture(image);
+      warper.warp(view_of(picture));  // refuses a picture that is not this camera's
+      write_frame_annotations(options.annotate, image.stem().string(), camera, table, picture, {});
+    } catch (const ConfigError&) {
+      throw;
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error(image.string() + ": " + error.what());
+    }
+  }
+}
+
+void check(const Options& options) {
+  if (options.annotate.empty() != options.images.empty()) {
+    throw ConfigError("--annotate", "", "goes with images",
+                      "give --annotate FOLDER and IMAGE..., or neither");
+  }
+  const Camera camera = load_camera(options.camera);
+  const WarpTable table = load_or_build_warp_table(camera, default_cache_directory()).table;
+  const CameraCheck found = check_camera(camera, table);
+  std::puts((options.json ? to_json(found) : to_text(found)).c_str());
+  if (!options.annotate.empty()) annotate(options, camera, table);
+}
+
+[[noreturn]] void refuse_tree(const std::string& text) {
+  throw ConfigError(
+      "--tree", "", "\"" + text + "\" is no measured tree",
+      "write BEARING_DEG,RANGE_M, for instance -35,3.20: left of forward is positive, "
+      "from -360 to 360 degrees and 0.1 to 100 m");
+}
+
+MeasuredTree parse_tree(const std::string& text) {
+  double bearing = 0, range = 0;
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, bearing);
+  if (first.ec != std::errc{} || first.ptr == end || *first.ptr != ',') refuse_tree(text);
+  const auto second = std::from_chars(first.ptr + 1, end, range);
+  if (second.ec != std::errc{} || second.ptr != end) refuse_tree(text);
+  // Written so that what is not a number is refused too.
+  if (!(std::abs(bearing) <= 360 && range >= 0.1 && range <= 100)) refuse_tree(text);
+  return {radians(bearing), range};
+}
+
+std::vector<fs::path> frames_of(const Options& options, const Camera& camera) {
+  const fs::path mask =
+      camera.config.mask.empty() ? fs::path() : camera.file.parent_path() / camera.config.mask;
+  std::vector<fs::path> frames;
+  for (const fs::path path : options.images) {
+    if (fs::is_directory(path)) {
+      const std::vector<fs::path> inside = frames_in(path, mask);
+      frames.insert(frames.end(), inside.begin(), inside.end());
+    } else {
+      frames.push_back(path);
+    }
+  }
+  return frames;
+}
+
+/// A key of [mount] before and after, in camera.toml's unit.
+struct Key {
+  const char* name;
+  double before;
+  Measured after;
+  int digits;
+};
+
+std::vector<Key> keys_of(const CameraConfig& before, const MountCalibration& found) {
+  const auto in_degrees = [](const Measured& angle) {
+    return Measured{degrees(angle.value), degrees(angle.sigma)};
+  };
+  const Mount& mount = before.mount;
+  std::vector<Key> keys = {{"roll_deg", degrees(mount.roll), in_degrees(found.roll), 2}};
+  if (before.horizon_row) {
+    keys.push_back({"horizon_row", *before.horizon_row, found.horizon_row, 1});
+  } else {
+    keys.push_back({"pitch_deg", degrees(mount.pitch), in_degrees(found.pitch), 2});
+  }
+  if (found.height.sigma > 0) keys.push_back({"height_m", mount.height, found.height, 3});
+  return keys;
+}
+
+void print_json(const std::vector<Key>& keys, const MountCalibration& found) {
+  nlohmann::ordered_json json = {
+      {"frames", found.frames}, {"unreadable", found.unreadable.size()}, {"trunks", found.trunks}};
+  for (const Key& key : keys) {
+    json[key.name] = {{"old", key.before}, {"new", key.after.value}, {"sigma", key.after.sigma}};
+  }
+  std::puts(json.dump().c_str());
+}
+
+void print_text(const std::vector<Key>& keys, const MountCalibration& found) {
+  std::printf("%d trunks in %d frames\n", found.trunks, found.frames);
+  for (const Key& key : keys) {
+    const double change = std::abs(key.after.value - key.before);
+    std::printf("%-11s %.*f -> %.*f \u00b1 %.*f%s\n", key.name, key.digits, key.before, key.digits,
+                key.after.value, key.digits, key.after.sigma,
+                change < key.after.sigma ? " (no change that these frames could tell)" : "");
+  }
+  std::printf("\nfor [mount] of camera.toml:\n");
+  for (const Key& key : keys) std::printf("%s = %.*f\n", key.name, key.digits, key.after.value);
+}
+
+// Log odds would be lost on a person: three standard deviations are not chance.
+void warn_of_slope(const TiltFigure& difference) {
+  const cv::Vec2d& off = difference.tilt;
+  if (off.dot(difference.covariance.inv() * off) < 9) return;
+  spdlog::warn(
+      "lean and feet differ by {:.1f} degrees: the ground slopes, or the wood leans; take frames "
+      "in "
+      "several places, facing different ways",
+      degrees(cv::norm(off)));
+}
+
+void mount(const Options& options) {
+  std::vector<MeasuredTree> trees;
+  for (const std::string& text : options.trees) trees.push_back(parse_tree(text));
+  Camera camera = load_camera(options.camera);
+  const CameraConfig before = camera.config;
+  const MountCalibration found =
+      calibrate_mount(camera, frames_of(options, camera), trees, show_progress);
+  for (const std::string& bad : found.unreadable) spdlog::warn("left out: {}", bad);
+  warn_of_slope(found.lean_against_feet);
+  const std::vector<Key> keys = keys_of(before, found);
+  if (options.json) {
+    print_json(keys, found);
+  } else {
+    print_text(keys, found);
+  }
+}
+
+}  // namespace
+
+void add_calib(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("calib", "Checks a camera's files, and estimates how it is mounted");
+  command->require_subcommand(1);
+  const auto add_common = [&](CLI::App* sub) {
+    sub->add_option("--camera", options->camera, "camera.toml")->type_name("FILE")->required();
+    sub->add_flag("--json", options->json, "Print one line of JSON");
+  };
+
+  CLI::App* check_command = command->add_subcommand(
+      "check", "Tells what a camera amounts to, and warns of what is likely a mistake");
+  add_common(check_command);
+  check_command
+      ->add_option(
+          "--annotate", options->annotate,
+          "Folder for two pictures an image: panorama and raw image, with the horizon, the "
+          "ground at whole metres and the robot's sides")
+      ->type_name("FOLDER");
+  check_command->add_option("IMAGE", options->images, "Image files to annotate")->type_name("");
+  check_command->callback([options] { check(*options); });
+
+  CLI::App* mount_command = command->add_subcommand(
+      "mount", "Estimates roll, pitch and height from frames of trunks; edits nothing");
+  add_common(mount_command);
+  mount_command
+      ->add_option("--tree", options->trees,
+                   "A tree measured by tape, from under the camera to the trunk's axis; the robot "
+                   "stood still for all frames. Gives the height; may be given more than once")
+      ->type_name("BEARING_DEG,RANGE_M")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  mount_command
+      ->add_option("FRAMES", options->images, "Images of trunks, or folders of them, in order")
+      ->type_name("")
+      ->required();
+  mount_command->callback([options] { mount(*options); });
+}
+
+}  // namespace bole

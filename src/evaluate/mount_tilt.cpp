@@ -1,0 +1,172 @@
+#include "evaluate/mount_tilt.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "geometry/angles.h"
+
+namespace bole {
+namespace {
+
+constexpr double kTiltSigma = 0.1;        // tangent, before anything is seen
+constexpr double kLeanSigma = 0.03;       // tangent, of trunks
+constexpr double kFootSigma = 0.004;      // tangent
+constexpr double kTypicalDiameter = 0.3;  // metres
+constexpr double kDiameterSpread = 0.5;   // share of it
+constexpr double kTail = 4;               // of the residuals' distribution: degrees of freedom
+constexpr double kCommonSlope = 0.01;     // of ground that is taken for level, along each axis
+constexpr double kCommonLean = 0.004;     // of a wood as a whole
+constexpr double kStill = 0.03;           // radians, and tangent: a trunk seen twice from one place
+constexpr double kPassing = 0.6;          // of its width: what it moves from frame to frame
+constexpr double kSameWidth = 0.3;        // of the logarithm
+constexpr double kSameFoot = 0.15;        // of the tangent
+
+// A witness and the trunk it is of.
+struct Sighting {
+  TiltWitness seen;
+  int trunk = 0;
+  double share = 0;  // of its trunk, times the probability that it is one
+};
+
+// How far apart two sightings are, 0 to 2; infinite when they cannot be of one trunk.
+double apart(const TiltWitness& a, const TiltWitness& b) {
+  const double turn =
+      std::abs(wrap_angle(a.bearing - b.bearing)) / (kStill + kPassing * a.sight.angular_width);
+  const double growth =
+      std::abs(std::log(a.sight.angular_width / b.sight.angular_width)) / kSameWidth;
+  const double foot =
+      std::abs(a.sight.down - b.sight.down) / (kStill + kSameFoot * std::max(0.0, b.sight.down));
+  return std::max({turn, growth, foot}) < 1 ? turn + growth
+                                            : std::numeric_limits<double>::infinity();
+}
+
+// Each goes to the trunk of the nearest sighting in the frame before that none has taken yet.
+std::vector<Sighting> follow_trunks(std::span<const std::vector<TiltWitness>> frames) {
+  std::vector<Sighting> all;
+  std::size_t before = 0;
+  int trunks = 0;
+  for (const std::vector<TiltWitness>& frame : frames) {
+    const std::size_t first = all.size();
+    std::vector<Sighting> earlier(all.begin() + static_cast<std::ptrdiff_t>(before), all.end());
+    for (const TiltWitness& witness : frame) {
+      const auto nearest = std::ranges::min_element(
+          earlier, {}, [&](const Sighting& other) { return apart(witness, other.seen); });
+      if (nearest != earlier.end() && std::isfinite(apart(witness, nearest->seen))) {
+        all.push_back({witness, nearest->trunk});
+        earlier.erase(nearest);
+      } else {
+        all.push_back({witness, trunks++});
+      }
+    }
+    before = first;
+  }
+  return all;
+}
+
+// Returns the number of trunks.
+int share_out(std::vector<Sighting>& sightings) {
+  const auto last = std::ranges::max_element(sightings, {}, &Sighting::trunk);
+  std::vector<int> times(last == sightings.end() ? 0 : last->trunk + 1);
+  for (const Sighting& s : sightings) ++times[s.trunk];
+  for (Sighting& s : sightings) s.share = s.seen.weight / times[s.trunk];
+  return static_cast<int>(times.size());
+}
+
+template <int N>
+struct Equation {
+  cv::Vec<double, N> factors;
+  double value = 0, sigma = 0, weight = 0;
+};
+
+template <int N>
+struct Solution {
+  cv::Vec<double, N> x;
+  cv::Matx<double, N, N> covariance;
+};
+
+// The most probable x under Student's distribution of residuals and a normal one of x about
+// `start`, by weighted least squares.
+template <int N>
+Solution<N> solve(const std::vector<Equation<N>>& equations, const cv::Vec<double, N>& start,
+                  const cv::Vec<double, N>& start_sigma) {
+  constexpr int kSteps = 20;
+  cv::Matx<double, N, N> prior = cv::Matx<double, N, N>::zeros();
+  for (int i = 0; i < N; ++i) prior(i, i) = 1 / (start_sigma[i] * start_sigma[i]);
+  Solution<N> solution{start, {}};
+  for (int step = 0; step < kSteps; ++step) {
+    cv::Matx<double, N, N> information = prior;
+    cv::Vec<double, N> sum = prior * start;
+    double misfit = 0, mass = 0;
+    for (const Equation<N>& e : equations) {
+      const double off = (e.value - e.factors.dot(solution.x)) / e.sigma;
+      const double trust = e.weight * (kTail + 1) / (kTail + off * off);
+      const double weight = trust / (e.sigma * e.sigma);
+      information += weight * (e.factors * e.factors.t());
+      sum += weight * e.value * e.factors;
+      misfit += trust * off * off;
+      mass += e.weight;
+    }
+    const cv::Matx<double, N, N> inverse = information.inv(cv::DECOMP_SVD);
+    solution = {inverse * sum, inverse * std::max(1.0, misfit / std::max(1.0, mass - N))};
+  }
+  return solution;
+}
+
+TiltFigure tilt_by_lean(const std::vector<Sighting>& sightings) {
+  std::vector<Equation<2>> equations;
+  for (const Sighting& s : sightings) {
+    const double b = s.seen.bearing;
+    equations.push_back({{std::sin(b), -std::cos(b)}, s.seen.lean, kLeanSigma, s.share});
+  }
+  const Solution<2> found = solve<2>(equations, {0, 0}, {kTiltSigma, kTiltSigma});
+  return {found.x, found.covariance + kCommonLean * kCommonLean * cv::Matx22d::eye()};
+}
+
+TiltFigure tilt_by_feet(const std::vector<Sighting>& sightings, double height) {
+  constexpr int kRounds = 5;  // the equations' sigmas depend on the typical diameter
+  const double typical = 2 * height / kTypicalDiameter;
+  const auto nearness = [](const Sighting& s) {
+    const double sine = std::sin(s.seen.sight.angular_width / 2);
+    return sine / (1 - sine);
+  };
+  Solution<3> found{{0, 0, typical}, {}};
+  for (int round = 0; round < kRounds; ++round) {
+    const double c = std::clamp(found.x[2], typical / 3, 3 * typical);
+    std::vector<Equation<3>> equations;
+    for (const Sighting& s : sightings) {
+      const double b = s.seen.bearing, x = nearness(s);
+      equations.push_back({{-std::cos(b), -std::sin(b), x},
+                           s.seen.sight.down,
+                           std::hypot(s.seen.sight.down_sigma, kFootSigma, kDiameterSpread * c * x),
+                           s.share});
+    }
+    found =
+        solve<3>(equations, {0, 0, typical}, {kTiltSigma, kTiltSigma, kDiameterSpread * typical});
+  }
+  return {
+      {found.x[0], found.x[1]},
+      found.covariance.get_minor<2, 2>(0, 0) + kCommonSlope * kCommonSlope * cv::Matx22d::eye()};
+}
+
+TiltFigure joined(const TiltFigure& a, const TiltFigure& b) {
+  const cv::Matx22d by_a = a.covariance.inv(), by_b = b.covariance.inv();
+  const cv::Matx22d covariance = (by_a + by_b).inv();
+  return {covariance * (by_a * a.tilt + by_b * b.tilt), covariance};
+}
+
+}  // namespace
+
+MountTilt estimate_mount_tilt(std::span<const std::vector<TiltWitness>> frames, double height) {
+  std::vector<Sighting> sightings = follow_trunks(frames);
+  MountTilt result;
+  result.trunks = share_out(sightings);
+  result.by_lean = tilt_by_lean(sightings);
+  result.by_feet = tilt_by_feet(sightings, height);
+  result.both = joined(result.by_lean, result.by_feet);
+  return result;
+}
+
+}  // namespace bole
