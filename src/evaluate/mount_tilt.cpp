@@ -12,22 +12,26 @@ namespace bole {
 namespace {
 
 constexpr double kTiltSigma = 0.1;        // tangent, before anything is seen
-constexpr double kLeanSigma = 0.03;       // tangent, of trunks
+constexpr double kLeanShown = 0.8;        // of a lean: where its edges disagree, the fit takes the
+                                          // more upright one
+constexpr double kLeanSigma = 0.03;       // tangent, of trunks, as it shows
 constexpr double kFootSigma = 0.004;      // tangent
 constexpr double kTypicalDiameter = 0.3;  // metres
-constexpr double kDiameterSpread = 0.5;   // share of it
+constexpr double kDiameterSpread = 0.5;   // of its logarithm
+constexpr double kLeastDown = 0.02;       // tangent of the farthest foot that tells anything
 constexpr double kTail = 4;               // of the residuals' distribution: degrees of freedom
 constexpr double kCommonSlope = 0.01;     // of ground that is taken for level, along each axis
 constexpr double kCommonLean = 0.004;     // of a wood as a whole
 constexpr double kStill = 0.03;           // radians, and tangent: a trunk seen twice from one place
 constexpr double kPassing = 0.6;          // of its width: what it moves from frame to frame
+constexpr int kMissed = 5;                // frames in which it may be overlooked
 constexpr double kSameWidth = 0.3;        // of the logarithm
 constexpr double kSameFoot = 0.15;        // of the tangent
 
 // A witness and the trunk it is of.
 struct Sighting {
   TiltWitness seen;
-  int trunk = 0;
+  int trunk = 0, frame = 0;
   double share = 0;  // of its trunk, times the probability that it is one
 };
 
@@ -43,25 +47,44 @@ double apart(const TiltWitness& a, const TiltWitness& b) {
                                             : std::numeric_limits<double>::infinity();
 }
 
-// Each goes to the trunk of the nearest sighting in the frame before that none has taken yet.
+// Each goes to the trunk of the nearest sighting of late that none of its frame has taken yet; -1
+// where there is none.
+std::vector<Sighting> recognise(const std::vector<TiltWitness>& frame, int now,
+                                std::vector<Sighting> latest) {
+  std::vector<Sighting> here;
+  for (const TiltWitness& witness : frame) {
+    const auto nearest = std::ranges::min_element(
+        latest, {}, [&](const Sighting& other) { return apart(witness, other.seen); });
+    const bool known = nearest != latest.end() && std::isfinite(apart(witness, nearest->seen));
+    here.push_back({witness, known ? nearest->trunk : -1, now});
+    if (known) latest.erase(nearest);
+  }
+  return here;
+}
+
+// A frame of which little is recognised is of another place, where the rest is so by chance.
+bool elsewhere(const std::vector<Sighting>& frame) {
+  return 2 * std::ranges::count(frame, -1, &Sighting::trunk) > std::ssize(frame);
+}
+
 std::vector<Sighting> follow_trunks(std::span<const std::vector<TiltWitness>> frames) {
-  std::vector<Sighting> all;
-  std::size_t before = 0;
-  int trunks = 0;
+  std::vector<Sighting> all, latest;  // of each trunk the latest sighting
+  int trunks = 0, now = 0;
   for (const std::vector<TiltWitness>& frame : frames) {
-    const std::size_t first = all.size();
-    std::vector<Sighting> earlier(all.begin() + static_cast<std::ptrdiff_t>(before), all.end());
-    for (const TiltWitness& witness : frame) {
-      const auto nearest = std::ranges::min_element(
-          earlier, {}, [&](const Sighting& other) { return apart(witness, other.seen); });
-      if (nearest != earlier.end() && std::isfinite(apart(witness, nearest->seen))) {
-        all.push_back({witness, nearest->trunk});
-        earlier.erase(nearest);
-      } else {
-        all.push_back({witness, trunks++});
-      }
+    std::vector<Sighting> here = recognise(frame, now++, latest);
+    if (elsewhere(here)) {
+      latest.clear();
+      for (Sighting& sighting : here) sighting.trunk = -1;
     }
-    before = first;
+    for (Sighting& sighting : here) {
+      if (sighting.trunk < 0) sighting.trunk = trunks++;
+    }
+    std::erase_if(latest, [&](const Sighting& old) {
+      return old.frame + kMissed < now ||
+             std::ranges::find(here, old.trunk, &Sighting::trunk) != here.end();
+    });
+    latest.insert(latest.end(), here.begin(), here.end());
+    all.insert(all.end(), here.begin(), here.end());
   }
   return all;
 }
@@ -119,32 +142,34 @@ TiltFigure tilt_by_lean(const std::vector<Sighting>& sightings) {
   std::vector<Equation<2>> equations;
   for (const Sighting& s : sightings) {
     const double b = s.seen.bearing;
-    equations.push_back({{std::sin(b), -std::cos(b)}, s.seen.lean, kLeanSigma, s.share});
+    equations.push_back(
+        {{kLeanShown * std::sin(b), -kLeanShown * std::cos(b)}, s.seen.lean, kLeanSigma, s.share});
   }
   const Solution<2> found = solve<2>(equations, {0, 0}, {kTiltSigma, kTiltSigma});
   return {found.x, found.covariance + kCommonLean * kCommonLean * cv::Matx22d::eye()};
 }
 
+// What varies is the width at a given depression, by the trees' diameters: so it is log x that is
+// fitted, and not the depression, which far trees would drag down.
 TiltFigure tilt_by_feet(const std::vector<Sighting>& sightings, double height) {
-  constexpr int kRounds = 5;  // the equations' sigmas depend on the typical diameter
-  const double typical = 2 * height / kTypicalDiameter;
-  const auto nearness = [](const Sighting& s) {
-    const double sine = std::sin(s.seen.sight.angular_width / 2);
-    return sine / (1 - sine);
-  };
-  Solution<3> found{{0, 0, typical}, {}};
+  constexpr int kRounds = 10;  // each linear about what the one before found
+  const cv::Vec3d start{0, 0, std::log(2 * height / kTypicalDiameter)};
+  Solution<3> found{start, {}};
   for (int round = 0; round < kRounds; ++round) {
-    const double c = std::clamp(found.x[2], typical / 3, 3 * typical);
     std::vector<Equation<3>> equations;
     for (const Sighting& s : sightings) {
-      const double b = s.seen.bearing, x = nearness(s);
-      equations.push_back({{-std::cos(b), -std::sin(b), x},
-                           s.seen.sight.down,
-                           std::hypot(s.seen.sight.down_sigma, kFootSigma, kDiameterSpread * c * x),
-                           s.share});
+      const double cosine = std::cos(s.seen.bearing), sine = std::sin(s.seen.bearing);
+      const double raise = cosine * found.x[0] + sine * found.x[1];
+      const double down = std::max(kLeastDown, s.seen.sight.down + raise);
+      const double half = std::sin(s.seen.sight.angular_width / 2), x = half / (1 - half);
+      const cv::Vec3d factors{cosine / down, sine / down, -1};
+      const double off = std::log(x) - (std::log(down) - found.x[2]);
+      equations.push_back(
+          {factors, off + factors.dot(found.x),
+           std::hypot(kDiameterSpread, s.seen.sight.down_sigma / down, kFootSigma / down),
+           s.share});
     }
-    found =
-        solve<3>(equations, {0, 0, typical}, {kTiltSigma, kTiltSigma, kDiameterSpread * typical});
+    found = solve<3>(equations, start, {kTiltSigma, kTiltSigma, kDiameterSpread});
   }
   return {
       {found.x[0], found.x[1]},

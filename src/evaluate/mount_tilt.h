@@ -28,10 +28,10 @@ struct MountTilt {
 /// viewpoint, metres. Two robust least squares over all witnesses, t = (forward, left), b =
 /// bearing:
 ///
-///   lean = (sin b, -cos b) t            but for each trunk's own lean
-///   down = c x - (cos b, sin b) t       x = s / (1 - s), s = sin(width / 2), c = 2 height /
-///                                       diameter, which is of a typical tree and fitted too
+///   lean = 0.8 (sin b, -cos b) t        but for each trunk's own lean; 0.8 of it is what shows
+///   log x = log(down + (cos b, sin b) t) - log c    but for each trunk's own diameter
 ///
+/// with x = s / (1 - s), s = sin(width / 2), and c = 2 height / the typical diameter, fitted too.
 /// A trunk that stays in sight from frame to frame counts once in all. The two are joined by how
 /// well each is known; neither is known better than the ground is level and a wood upright.
 /// Whatever the witnesses do not tell has a standard deviation of 0.1.
