@@ -18,6 +18,7 @@ constexpr int kMostRounds = 8;
 constexpr int kFewestTrunks = 8;
 constexpr double kVaguest = radians(1);      // standard deviation that is still of use
 constexpr double kSameBearing = radians(3);  // of a measured tree and what is found there
+constexpr double kMostRatio = 1.7;           // of heights, true and supposed
 constexpr double kFootSigma = 0.004;         // tangent: where grass and flare let a foot end
 constexpr double kGroundSigma = 0.02;        // metres, of ground that is even
 constexpr double kTapeSigma = 0.01;          // share of a measured range
@@ -64,9 +65,9 @@ double sigma_towards(const TiltFigure& figure, double about) {
 Vec3 up_of(const cv::Vec2d& tilt) { return {-tilt[0], -tilt[1], 1}; }
 
 double median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  std::ranges::sort(values);
+  const auto n = values.size();
+  return (values[(n - 1) / 2] + values[n / 2]) / 2;
 }
 
 [[noreturn]] void refuse(const char* form, double a, double b = 0) {
@@ -84,8 +85,8 @@ void require_enough(const MountTilt& tilt, double yaw) {
                roll = sigma_towards(tilt.both, yaw + kPi / 2);
   if (std::max(pitch, roll) > kVaguest) {
     refuse(
-        "the trunks tell roll to %.1f and pitch to %.1f degrees only; take frames with trunks on "
-        "all sides",
+        "the trunks tell roll to %.1f and pitch to %.1f degrees only; take more frames, with "
+        "trunks on all sides of the picture",
         degrees(roll), degrees(pitch));
   }
 }
@@ -105,45 +106,61 @@ Measured horizon_of(const Camera& camera, double pitch_sigma) {
   return {row(pitch), std::abs(row(pitch + pitch_sigma) - row(pitch))};
 }
 
-// The range on level ground of what is found nearest to the tree's bearing; nothing when that is
-// another tree.
-std::optional<TiltWitness> found_at(const std::vector<TiltWitness>& frame, double bearing) {
-  const auto off = [&](const TiltWitness& w) { return std::abs(wrap_angle(w.bearing - bearing)); };
-  const auto nearest = std::ranges::min_element(frame, {}, off);
-  if (nearest == frame.end() || off(*nearest) > kSameBearing || nearest->sight.down <= 0)
-    return std::nullopt;
-  return *nearest;
+// The true height over the supposed one, if this is the tree.
+double height_ratio(const TiltWitness& witness, const MeasuredTree& tree, double height) {
+  const TrunkSight& sight = witness.sight;
+  return tree.range * sight.down * (1 - std::sin(sight.angular_width / 2)) / height;
+}
+
+// The nearest in bearing of those that can be the tree.
+std::optional<TiltWitness> found(const std::vector<TiltWitness>& frame, const MeasuredTree& tree,
+                                 double height) {
+  std::optional<TiltWitness> nearest;
+  double least = kSameBearing;
+  for (const TiltWitness& witness : frame) {
+    const double off = std::abs(wrap_angle(witness.bearing - tree.bearing));
+    const double ratio = height_ratio(witness, tree, height);
+    if (off >= least || ratio < 1 / kMostRatio || ratio > kMostRatio) continue;
+    least = off;
+    nearest = witness;
+  }
+  return nearest;
+}
+
+// As one tree has it, in the median over frames.
+Measured height_ratio(std::span<const std::vector<TiltWitness>> frames, const MeasuredTree& tree,
+                      double height, double tilt_sigma) {
+  std::vector<double> ratios, downs;
+  for (const std::vector<TiltWitness>& frame : frames) {
+    if (const auto witness = found(frame, tree, height)) {
+      ratios.push_back(height_ratio(*witness, tree, height));
+      downs.push_back(witness->sight.down);
+    }
+  }
+  if (ratios.empty()) {
+    refuse(
+        "no trunk is found within 3 degrees of bearing %.1f at some %.1f m; measure one that "
+        "bolectl detect finds",
+        degrees(tree.bearing), tree.range);
+  }
+  return {median(ratios), std::hypot(std::hypot(kFootSigma, tilt_sigma) / median(downs),
+                                     kGroundSigma / height, kTapeSigma)};
 }
 
 }  // namespace
 
 Measured estimate_height(std::span<const std::vector<TiltWitness>> frames,
                          std::span<const MeasuredTree> trees, double height, double tilt_sigma) {
-  std::vector<double> ratios, variances;
+  std::vector<double> ratios;
+  double variance = 0;  // of their mean, which a median comes close to
+  const auto count = static_cast<double>(trees.size());
   for (const MeasuredTree& tree : trees) {
-    std::vector<double> seen, downs;
-    for (const std::vector<TiltWitness>& frame : frames) {
-      if (const auto witness = found_at(frame, tree.bearing)) {
-        const TrunkSight& sight = witness->sight;
-        downs.push_back(sight.down);
-        seen.push_back(tree.range * sight.down * (1 - std::sin(sight.angular_width / 2)) / height);
-      }
-    }
-    if (seen.empty()) {
-      refuse(
-          "no trunk is found within 3 degrees of the one measured at bearing %.1f degrees; "
-          "measure another that bolectl detect finds",
-          degrees(tree.bearing));
-    }
-    ratios.push_back(median(seen));
-    const double sigma = std::hypot(std::hypot(kFootSigma, tilt_sigma) / median(downs),
-                                    kGroundSigma / height, kTapeSigma);
-    variances.push_back(sigma * sigma);
+    const Measured ratio = height_ratio(frames, tree, height, tilt_sigma);
+    ratios.push_back(ratio.value);
+    variance += ratio.sigma * ratio.sigma / (count * count);
   }
-  const double n = static_cast<double>(trees.size());
-  const double mean_variance = std::reduce(variances.begin(), variances.end()) / n;
   const double ratio = median(ratios);
-  return {height * ratio, height * ratio * std::sqrt(mean_variance / n)};
+  return {height * ratio, height * ratio * std::sqrt(variance)};
 }
 
 MountCalibration calibrate_mount(Camera& camera, std::span<const std::filesystem::path> images,

@@ -27,8 +27,8 @@ struct MountCalibration {
   Measured roll, pitch;  ///< radians
   Measured horizon_row;  ///< of a camera that has one
   Measured height;       ///< metres; sigma 0: no tree was measured, it is the old one
-  TiltFigure
-      lean_against_feet;  ///< the old mount's tilt by the trunks' lean less that by their feet
+  /// What tilt the trunks' lean still tells of that mount, less what their feet tell.
+  TiltFigure lean_against_feet;
   int frames = 0, trunks = 0;
   std::vector<std::string> unreadable;  ///< the images of no use, and why
 };
@@ -48,7 +48,9 @@ MountCalibration calibrate_mount(Camera& camera, std::span<const std::filesystem
                                  const std::function<void(int, int)>& progress);
 
 /// The true height by measured trees, from each frame's witnesses under a mount whose tilt is known
-/// to `tilt_sigma` (a tangent).
+/// to `tilt_sigma` (a tangent). A tree's witness is the nearest in bearing, within 3 degrees, of
+/// those that would make the height neither 1.7 times more nor less. Throws std::runtime_error when
+/// a tree has none.
 Measured estimate_height(std::span<const std::vector<TiltWitness>> frames,
                          std::span<const MeasuredTree> trees, double height, double tilt_sigma);
 

@@ -21,7 +21,7 @@ constexpr double kDiameterSpread = 0.5;   // of its logarithm
 constexpr double kLeastDown = 0.02;       // tangent of the farthest foot that tells anything
 constexpr double kTail = 4;               // of the residuals' distribution: degrees of freedom
 constexpr double kCommonSlope = 0.01;     // of ground that is taken for level, along each axis
-constexpr double kCommonLean = 0.004;     // of a wood as a whole
+constexpr double kMostTrunks = 150;       // neighbours lean alike: more do not tell more
 constexpr double kStill = 0.03;           // radians, and tangent: a trunk seen twice from one place
 constexpr double kPassing = 0.6;          // of its width: what it moves from frame to frame
 constexpr int kMissed = 5;                // frames in which it may be overlooked
@@ -94,7 +94,9 @@ int share_out(std::vector<Sighting>& sightings) {
   const auto last = std::ranges::max_element(sightings, {}, &Sighting::trunk);
   std::vector<int> times(last == sightings.end() ? 0 : last->trunk + 1);
   for (const Sighting& s : sightings) ++times[s.trunk];
-  for (Sighting& s : sightings) s.share = s.seen.weight / times[s.trunk];
+  double all = 0;
+  for (Sighting& s : sightings) all += s.share = s.seen.weight / times[s.trunk];
+  for (Sighting& s : sightings) s.share *= std::min(1.0, kMostTrunks / all);
   return static_cast<int>(times.size());
 }
 
@@ -146,30 +148,32 @@ TiltFigure tilt_by_lean(const std::vector<Sighting>& sightings) {
         {{kLeanShown * std::sin(b), -kLeanShown * std::cos(b)}, s.seen.lean, kLeanSigma, s.share});
   }
   const Solution<2> found = solve<2>(equations, {0, 0}, {kTiltSigma, kTiltSigma});
-  return {found.x, found.covariance + kCommonLean * kCommonLean * cv::Matx22d::eye()};
+  return {found.x, found.covariance};
 }
 
 // What varies is the width at a given depression, by the trees' diameters: so it is log x that is
-// fitted, and not the depression, which far trees would drag down.
+// fitted, and not the depression. Far trees that are found at all are thicker ones, which looks as
+// if the ground fell on all sides: that is fitted too, and with it goes what trunks on one side
+// only seem to tell.
 TiltFigure tilt_by_feet(const std::vector<Sighting>& sightings, double height) {
   constexpr int kRounds = 10;  // each linear about what the one before found
-  const cv::Vec3d start{0, 0, std::log(2 * height / kTypicalDiameter)};
-  Solution<3> found{start, {}};
+  const cv::Vec4d start{0, 0, 0, std::log(2 * height / kTypicalDiameter)};
+  Solution<4> found{start, {}};
   for (int round = 0; round < kRounds; ++round) {
-    std::vector<Equation<3>> equations;
+    std::vector<Equation<4>> equations;
     for (const Sighting& s : sightings) {
       const double cosine = std::cos(s.seen.bearing), sine = std::sin(s.seen.bearing);
-      const double raise = cosine * found.x[0] + sine * found.x[1];
+      const double raise = cosine * found.x[0] + sine * found.x[1] + found.x[2];
       const double down = std::max(kLeastDown, s.seen.sight.down + raise);
       const double half = std::sin(s.seen.sight.angular_width / 2), x = half / (1 - half);
-      const cv::Vec3d factors{cosine / down, sine / down, -1};
-      const double off = std::log(x) - (std::log(down) - found.x[2]);
+      const cv::Vec4d factors{cosine / down, sine / down, 1 / down, -1};
+      const double off = std::log(x) - (std::log(down) - found.x[3]);
       equations.push_back(
           {factors, off + factors.dot(found.x),
            std::hypot(kDiameterSpread, s.seen.sight.down_sigma / down, kFootSigma / down),
            s.share});
     }
-    found = solve<3>(equations, start, {kTiltSigma, kTiltSigma, kDiameterSpread});
+    found = solve<4>(equations, start, {kTiltSigma, kTiltSigma, kTiltSigma, kDiameterSpread});
   }
   return {
       {found.x[0], found.x[1]},

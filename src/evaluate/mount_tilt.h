@@ -29,12 +29,13 @@ struct MountTilt {
 /// bearing:
 ///
 ///   lean = 0.8 (sin b, -cos b) t        but for each trunk's own lean; 0.8 of it is what shows
-///   log x = log(down + (cos b, sin b) t) - log c    but for each trunk's own diameter
+///   log x = log(down + (cos b, sin b) t + k) - log c    but for each trunk's own diameter
 ///
-/// with x = s / (1 - s), s = sin(width / 2), and c = 2 height / the typical diameter, fitted too.
+/// with x = s / (1 - s), s = sin(width / 2); c = 2 height / the typical diameter, and k for trees
+/// that are thicker the farther away they are found, are fitted too.
 /// A trunk that stays in sight from frame to frame counts once in all. The two are joined by how
-/// well each is known; neither is known better than the ground is level and a wood upright.
-/// Whatever the witnesses do not tell has a standard deviation of 0.1.
+/// well each is known; neither is known better than the ground is level, or by more than 150
+/// trunks. Whatever the witnesses do not tell has a standard deviation of 0.1.
 MountTilt estimate_mount_tilt(std::span<const std::vector<TiltWitness>> frames, double height);
 
 }  // namespace bole

@@ -12,7 +12,8 @@ import pytest
 from processes import free_endpoint, running
 
 
-@pytest.mark.parametrize("program", ["boled", "bolectl", "bolectl detect", "bolectl lut info"])
+@pytest.mark.parametrize("program", ["boled", "bolectl", "bolectl detect", "bolectl lut info",
+                                     "bolectl calib mount"])
 def test_help_and_version(programs, program):
     name, *command = program.split()
     for option, text in [("--help", "Usage:"), ("--version", f"{name} ")]:
