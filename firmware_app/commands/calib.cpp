@@ -126,7 +126,8 @@ void print_json(const std::vector<Key>& keys, const MountCalibration& found) {
 }
 
 void print_text(const std::vector<Key>& keys, const MountCalibration& found) {
-  std::printf("%d trunks in %d frames\n", found.trunks, found.frames);
+  std::printf("%d frames, %d trunks (one that was lost from sight may count again)\n", found.frames,
+              found.trunks);
   for (const Key& key : keys) {
     const double change = std::abs(key.after.value - key.before);
     std::printf("%-11s %.*f -> %.*f \u00b1 %.*f%s\n", key.name, key.digits, key.before, key.digits,
@@ -137,7 +138,7 @@ void print_text(const std::vector<Key>& keys, const MountCalibration& found) {
   for (const Key& key : keys) std::printf("%s = %.*f\n", key.name, key.digits, key.after.value);
 }
 
-// Log odds would be lost on a person: three standard deviations are not chance.
+// Three standard deviations are not chance.
 void warn_of_slope(const TiltFigure& difference) {
   const cv::Vec2d& off = difference.tilt;
   if (off.dot(difference.covariance.inv() * off) < 9) return;

@@ -19,7 +19,7 @@ constexpr int kFewestTrunks = 8;
 constexpr double kVaguest = radians(1);      // standard deviation that is still of use
 constexpr double kSameBearing = radians(3);  // of a measured tree and what is found there
 constexpr double kMostRatio = 1.7;           // of heights, true and supposed
-constexpr double kFootSigma = 0.004;         // tangent: where grass and flare let a foot end
+constexpr double kFootSigma = 0.006;         // tangent: where grass and flare let a foot end
 constexpr double kGroundSigma = 0.02;        // metres, of ground that is even
 constexpr double kTapeSigma = 0.01;          // share of a measured range
 
@@ -96,10 +96,11 @@ Measured horizon_of(const Camera& camera, double pitch_sigma) {
     Mount mount = camera.config.mount;
     mount.pitch = pitch;
     const auto pixel = camera.model->pixel_from_ray(level_ray_of_forward_camera(mount));
-    if (!pixel)
+    if (!pixel) {
       throw std::runtime_error(
-          "the horizon lies where the lens shows nothing; mend "
-          "horizon_row and roll_deg roughly by hand first");
+          "the horizon lies where the lens shows nothing; mend horizon_row and roll_deg roughly by "
+          "hand first");
+    }
     return pixel->row;
   };
   const double pitch = camera.config.mount.pitch;
