@@ -19,7 +19,7 @@ constexpr int kFewestTrunks = 8;
 constexpr double kVaguest = radians(1);      // standard deviation that is still of use
 constexpr double kSameBearing = radians(3);  // of a measured tree and what is found there
 constexpr double kMostRatio = 1.7;           // of heights, true and supposed
-constexpr double kFootSigma = 0.006;         // tangent: where grass and flare let a foot end
+constexpr double kFootSigma = 0.008;         // tangent: where grass and flare let a foot end
 constexpr double kGroundSigma = 0.02;        // metres, of ground that is even
 constexpr double kTapeSigma = 0.01;          // share of a measured range
 
