@@ -143,9 +143,8 @@ void warn_of_slope(const TiltFigure& difference) {
   const cv::Vec2d& off = difference.tilt;
   if (off.dot(difference.covariance.inv() * off) < 9) return;
   spdlog::warn(
-      "lean and feet differ by {:.1f} degrees: the ground slopes, or the wood leans; take frames "
-      "in "
-      "several places, facing different ways",
+      "lean and feet differ by {:.1f} degrees: the ground slopes, or the wood leans; "
+      "take frames in several places, facing different ways",
       degrees(cv::norm(off)));
 }
 

@@ -75,8 +75,7 @@ void warn_of_sides(const Mount& mount, Warnings& warnings) {
   if (!mount.centre_looks_down && !mirrored(mount)) {
     warnings.push_back(
         "mount: a camera whose middle sees the sky shows the robot's left on the image's right "
-        "when "
-        "forward is up; forward and left say otherwise, which fits only an image that was flipped");
+        "when forward is up; forward and left say otherwise, which fits only a flipped image");
   }
 }
 
