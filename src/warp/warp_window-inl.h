@@ -25,9 +25,9 @@ HWY_INLINE __m512i four_rows_of_16(const std::uint8_t* from, std::ptrdiff_t stri
 
 HWY_INLINE __m512i eight_rows_of_8(const std::uint8_t* from, std::ptrdiff_t stride) {
   const auto two = [&](int i) {
-    const __m128d first = _mm_load_sd(reinterpret_cast<const double*>(from + i * stride));
-    return _mm_castpd_si128(
-        _mm_loadh_pd(first, reinterpret_cast<const double*>(from + (i + 1) * stride)));
+    const __m128i first = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(from + i * stride));
+    return _mm_castpd_si128(_mm_loadh_pd(_mm_castsi128_pd(first),
+                                         reinterpret_cast<const double*>(from + (i + 1) * stride)));
   };
   const __m256i first = _mm256_inserti128_si256(_mm256_castsi128_si256(two(0)), two(2), 1);
   const __m256i second = _mm256_inserti128_si256(_mm256_castsi128_si256(two(4)), two(6), 1);
