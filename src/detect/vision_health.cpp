@@ -14,7 +14,7 @@ constexpr int kRowStep = 6, kColumnStep = 4;
 constexpr int kSharpFrom = 2, kSharpStep = 2 * kRowStep;  // rows
 constexpr int kFarPlaces = 4, kFar = kFarPlaces * kColumnStep;
 constexpr int kNoise = 8;  // in a sum of four pixels
-constexpr int kFramesToTell = 3;
+constexpr int kFramesToBelieve = 3;
 constexpr int kRepeatsOfFrozen = 3;
 
 constexpr int kSaturated = 250;
@@ -246,20 +246,9 @@ VisionHealth::Reason VisionHealth::judge() {
 VisionHealth::Reason VisionHealth::observe(const PanoramaView& panorama) {
   measure(panorama);
   Reason now = judge();
-  if (now == Reason::none && repeats_ >= kRepeatsOfFrozen) {
-    now = Reason::frozen;  // has been seen in several frames already
-    told_ = now;
-  }
-  if (now == told_) {
-    coming_for_ = 0;
-    return told_;
-  }
-  coming_for_ = now == coming_ ? coming_for_ + 1 : 1;
-  coming_ = now;
-  if (coming_for_ >= kFramesToTell) {
-    told_ = now;
-    coming_for_ = 0;
-  }
+  if (now == Reason::none && repeats_ >= kRepeatsOfFrozen) now = Reason::frozen;
+  good_frames_ = now == Reason::none ? std::min(good_frames_ + 1, kFramesToBelieve) : 0;
+  if (now != Reason::none || good_frames_ == kFramesToBelieve) told_ = now;
   return told_;
 }
 

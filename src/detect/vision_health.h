@@ -19,8 +19,9 @@ class VisionHealth {
   /// `seen` is read here and no more.
   VisionHealth(const PanoramaGeometry& geometry, const SeenMap& seen);
 
-  /// What is wrong with the view as of this frame, the gravest reason first. A reason must show in
-  /// three frames running before it is told, and be gone for three before it is taken back.
+  /// What is wrong with the view as of this frame, the gravest reason first. It is told at once,
+  /// and taken back after three good frames running: of one frame too many called bad a planner
+  /// loses little, of one too few it may lose the robot.
   ///
   ///   dark     hardly any grey level left to tell things apart
   ///   glare    saturated, or veiled to one bright grey, over much of the panorama
@@ -79,8 +80,8 @@ class VisionHealth {
   Statistics statistics_;
   std::uint64_t last_checksum_ = 0;
   int repeats_ = 0;
-  Reason told_ = Reason::none, coming_ = Reason::none;
-  int coming_for_ = 0;
+  Reason told_ = Reason::none;
+  int good_frames_ = 0;  // running
 };
 
 /// "dark", "glare", ...; empty for none.

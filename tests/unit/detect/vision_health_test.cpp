@@ -38,6 +38,8 @@ class VisionHealthTest : public testing::Test {
     return reason;
   }
   static double unspoilt(double grey, int, int) { return grey; }
+  static double dark(double grey, int, int) { return 0.03 * grey; }
+  static double glaring(double grey, int, int) { return 3 * grey; }
 };
 
 TEST_F(VisionHealthTest, IsSilentWhileTheViewIsGood) {
@@ -46,13 +48,11 @@ TEST_F(VisionHealthTest, IsSilentWhileTheViewIsGood) {
 
 TEST_F(VisionHealthTest, TellsDarknessWithinFiveFramesAndTakesItBack) {
   EXPECT_EQ(after(3, unspoilt), Reason::none);
-  EXPECT_EQ(after(5, [](double grey, int, int) { return 0.03 * grey; }), Reason::dark);
+  EXPECT_EQ(after(5, dark), Reason::dark);
   EXPECT_EQ(after(5, unspoilt), Reason::none);
 }
 
-TEST_F(VisionHealthTest, TellsASaturatedView) {
-  EXPECT_EQ(after(5, [](double grey, int, int) { return 3 * grey; }), Reason::glare);
-}
+TEST_F(VisionHealthTest, TellsASaturatedView) { EXPECT_EQ(after(5, glaring), Reason::glare); }
 
 TEST_F(VisionHealthTest, TellsAVeiledView) {
   EXPECT_EQ(after(5, [](double grey, int, int) { return 215 + 0.08 * grey; }), Reason::glare);
@@ -87,10 +87,21 @@ TEST_F(VisionHealthTest, TellsAFrozenPictureAndForgivesTwins) {
   EXPECT_EQ(after(3, unspoilt), Reason::none);
 }
 
-TEST_F(VisionHealthTest, DoesNotTellOfASingleBadFrame) {
-  EXPECT_EQ(after(3, unspoilt), Reason::none);
-  EXPECT_EQ(after(1, [](double, int, int) { return 0.0; }), Reason::none);
+TEST_F(VisionHealthTest, TellsOfTheFirstFrameAlready) { EXPECT_EQ(after(1, dark), Reason::dark); }
+
+TEST_F(VisionHealthTest, BelievesInGoodSightAfterThreeGoodFramesRunning) {
+  EXPECT_EQ(after(1, dark), Reason::dark);
+  EXPECT_EQ(after(2, unspoilt), Reason::dark);
+  EXPECT_EQ(after(1, dark), Reason::dark);
+  EXPECT_EQ(after(2, unspoilt), Reason::dark);
   EXPECT_EQ(after(1, unspoilt), Reason::none);
+}
+
+TEST_F(VisionHealthTest, TellsOfReasonsThatAlternate) {
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_EQ(after(1, dark), Reason::dark);
+    EXPECT_EQ(after(1, glaring), Reason::glare);
+  }
 }
 
 }  // namespace
