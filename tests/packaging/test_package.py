@@ -3,6 +3,7 @@ unpacked."""
 
 import gzip
 import json
+import re
 import shutil
 import subprocess
 
@@ -90,6 +91,15 @@ def test_files_are_readable_by_all_and_hold_no_debugging_symbols(root):
 def test_each_program_has_a_manual(root, page, option):
     assert option in gzip.decompress((root / "usr/share/man" / page).read_bytes()).decode().replace(
         "\\-", "-")
+
+
+def test_links_of_the_documentation_lead_somewhere(root):
+    folder = root / "usr/share/doc/bole"
+    pages = [folder / "README.md", *folder.glob("docs/*.md")]
+    assert len(pages) > 1
+    links = [(page, link) for page in pages
+             for link in re.findall(r"\]\((?!https?:)([^)#]+)", page.read_text())]
+    assert not [link for page, link in links if not (page.parent / link).exists()]
 
 
 def test_programs_and_plug_ins_run_from_where_they_are_unpacked(root, tmp_path):
