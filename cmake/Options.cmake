@@ -23,8 +23,10 @@ endif()
 # bole_library(name sources...): a static library of ours.
 function(bole_library name)
   add_library(${name} STATIC ${ARGN})
-  target_link_libraries(${name} PRIVATE bole_options)
-  target_include_directories(${name} PUBLIC "${CMAKE_SOURCE_DIR}/src")
+  target_link_libraries(${name} PRIVATE $<BUILD_INTERFACE:bole_options>)
+  target_include_directories(${name} PUBLIC
+    "$<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/src>"
+    "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/bole>")
 endfunction()
 
 # bole_core_library(name sources...): the same, for what finds trees: without fused multiply-adds of

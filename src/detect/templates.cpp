@@ -107,7 +107,8 @@ Templates::Templates(const DetectorSetup& setup, const Bands& bands, int most_ca
 }
 
 // How much the place of a foot counts in a candidate's rank, by the band that the trunk ends in.
-// The ground need not be level, and the foot is coarse yet: little.
+// The ground need not be level, and the foot is coarse yet: little, but for where no searched tree
+// can end.
 void Templates::weigh_feet(const RangePosterior& posterior, double horizon, Size& size) const {
   for (int band = 0; band < bands_; ++band) {
     const double likelihood = posterior.log_likelihood_of_searched(

@@ -41,15 +41,15 @@ def fields(package):
 
 
 def test_each_package_says_what_it_is_and_what_it_needs(packages):
-    assert {"bole", "bole-tools", "bole-replay-codecs"} <= set(packages)
+    assert {"bole", "bole-tools", "bole-replay-codecs", "bole-dev"} <= set(packages)
     version = output(BUILD / "firmware_app/boled", "--version").split()[1]
     for name, package in packages.items():
         said = fields(package)
         assert (said["Package"], said["Version"]) == (name, version)
         assert said["Architecture"] == output("dpkg", "--print-architecture").strip()
         assert "@" in said["Maintainer"] and said["Description"]
-        assert "libc6" in said["Depends"]
-        assert name == "bole" or f"bole (= {version})" in said["Depends"]
+        assert name == "bole-dev" or "libc6" in said["Depends"]
+        assert name in ("bole", "bole-dev") or f"bole (= {version})" in said["Depends"]
     # A robot gets by without OpenCV and libcamera, and its tool without OpenCV's decoders.
     assert "liblcm1" in (daemon := fields(packages["bole"])["Depends"])
     assert "opencv" not in daemon and "libcamera" not in daemon
@@ -120,3 +120,17 @@ def test_programs_and_plug_ins_run_from_where_they_are_unpacked(root, tmp_path):
         run = subprocess.run([bolectl, "doctor", "--camera", camera, "--source", "libcamera:none"],
                              capture_output=True, text=True)
         assert "libcamera:none is not there" in run.stdout
+
+
+def test_a_program_of_ones_own_finds_trees_by_the_library(root, tmp_path):
+    output(root / "usr/bin/bolectl", "sim", "--out", tmp_path / "drive", "--frames", "1", "--seed",
+           "1", "--format", "grey")
+    camera, frame = tmp_path / "drive/camera.toml", next((tmp_path / "drive").glob("*.grey"))
+    build = tmp_path / "build"
+    output("cmake", "-S", root / "usr/share/bole/examples/find_trees", "-B", build,
+           f"-DCMAKE_PREFIX_PATH={root}/usr", "-DCMAKE_BUILD_TYPE=Release")
+    output("cmake", "--build", build)
+    trees = output(build / "find_trees", camera, frame).splitlines()
+    assert trees and all(" rad, " in tree for tree in trees)
+    refused = subprocess.run([build / "find_trees", camera, camera], capture_output=True, text=True)
+    assert (refused.returncode, refused.stderr.count("\n")) == (1, 1)
