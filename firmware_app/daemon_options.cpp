@@ -105,7 +105,8 @@ void add_publish_option(CLI::App& app, const Options& options) {
          [options](const std::vector<std::string>& targets) {
            options->named.push_back({"--publish", {"publish.to", list_of(targets)}});
          },
-         "lcm, zenoh, jsonl:PATH or jsonl:- for standard output; several with commas")
+         "lcm, zenoh, jsonl:PATH (lists are added to the file; in lockstep it is made anew) or "
+         "jsonl:- for standard output; several with commas")
       ->type_name("BUS")
       ->delimiter(',');
 }

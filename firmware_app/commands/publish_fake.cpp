@@ -28,7 +28,8 @@ class FakeDaemon {
   FakeDaemon(const DaemonConfig& config, std::uint64_t seed)
       : wood_(seed),
         telemetry_(BOLE_VERSION, config.camera.name),
-        buses_(make_publishers(config, "{}"), WhenFull::overwrite, [] {}) {
+        buses_(make_publishers(config, "{}", JsonlPublisher::Earlier::kept), WhenFull::overwrite,
+               [] {}) {
     list_.source = ListSource::fake;
     list_.camera = config.camera.name;
     telemetry_.capture_event({CameraState::streaming, "fake", false});

@@ -95,8 +95,10 @@ void run_daemon(const DaemonConfig& config, const std::string& version, int stop
   SourceSetup setup = make_source(config, camera);
   const WarpTable table = open_table(config.camera, camera);
   if (config.service.realtime_priority > 0) set_realtime_priority(config.service.realtime_priority);
-  std::vector<std::unique_ptr<Publisher>> publishers =
-      make_publishers(config, calibration_json(camera));
+  // In lockstep a file holds the same bytes after every run.
+  using Earlier = JsonlPublisher::Earlier;
+  std::vector<std::unique_ptr<Publisher>> publishers = make_publishers(
+      config, calibration_json(camera), setup.lockstep ? Earlier::erased : Earlier::kept);
 
   ProcessorOptions options;
   options.mode = config.detect.mode;

@@ -1,7 +1,6 @@
 #include "service/make_publishers.h"
 
 #include "base/errors.h"
-#include "publish/jsonl_publisher.h"
 #include "publish/lcm_publisher.h"
 #ifdef BOLE_ZENOH
 #include "publish/zenoh_publisher.h"
@@ -24,12 +23,13 @@ std::unique_ptr<Publisher> make_zenoh(const DaemonConfig& /*config*/,
 #endif
 
 std::unique_ptr<Publisher> make_publisher(const PublishTarget& target, const DaemonConfig& config,
-                                          const std::string& calibration) {
+                                          const std::string& calibration,
+                                          JsonlPublisher::Earlier earlier) {
   switch (target.bus) {
     case PublishTarget::Bus::lcm:
       return std::make_unique<LcmPublisher>(config.lcm);
     case PublishTarget::Bus::jsonl:
-      return std::make_unique<JsonlPublisher>(target.path);
+      return std::make_unique<JsonlPublisher>(target.path, earlier);
     case PublishTarget::Bus::zenoh:
       break;
   }
@@ -39,10 +39,11 @@ std::unique_ptr<Publisher> make_publisher(const PublishTarget& target, const Dae
 }  // namespace
 
 std::vector<std::unique_ptr<Publisher>> make_publishers(const DaemonConfig& config,
-                                                        const std::string& calibration) {
+                                                        const std::string& calibration,
+                                                        JsonlPublisher::Earlier earlier) {
   std::vector<std::unique_ptr<Publisher>> publishers;
   for (const PublishTarget& target : config.publish.to) {
-    publishers.push_back(make_publisher(target, config, calibration));
+    publishers.push_back(make_publisher(target, config, calibration, earlier));
   }
   return publishers;
 }
