@@ -64,6 +64,11 @@ def test_each_package_says_what_is_new_in_its_version(packages, root):
 def test_the_service_runs_what_is_installed(root):
     unit = (root / "usr/lib/systemd/system/boled.service").read_text()
     assert "ExecStart=/usr/bin/boled\n" in unit and "@" not in unit
+    # What boled.toml says of files of the service.
+    settings = (root / "usr/share/bole/boled.toml").read_text()
+    assert "/var/lib/bole/lists.jsonl" in settings and "StateDirectory=bole\n" in unit
+    assert "/var/cache/bole" in settings and "CacheDirectory=bole\n" in unit
+    assert "/run/credentials/boled.service/" in settings and "LoadCredential=" in settings
     assert (root / "usr/lib/udev/rules.d/70-bole-cameras.rules").exists()
     assert (root / "etc/bole/camera").is_dir()
     assert not (root / "usr/local").exists()
