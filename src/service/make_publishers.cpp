@@ -36,7 +36,28 @@ std::unique_ptr<Publisher> make_publisher(const PublishTarget& target, const Dae
   return make_zenoh(config, calibration);
 }
 
+std::string zenoh_address(const ZenohConfig& zenoh) {
+  std::string text;
+  for (const std::string& endpoint : zenoh.listen) text += ", listens on " + endpoint;
+  for (const std::string& endpoint : zenoh.connect) text += ", connects to " + endpoint;
+  if (!zenoh.config_file.empty()) text += ", by " + zenoh.config_file;
+  if (text.empty()) text = ", listens on tcp/127.0.0.1:7447";
+  return "zenoh (" + text.substr(2) + ")";
+}
+
 }  // namespace
+
+std::string address(const PublishTarget& target, const DaemonConfig& config) {
+  switch (target.bus) {
+    case PublishTarget::Bus::lcm:
+      return "lcm (" + config.lcm.text() + ")";
+    case PublishTarget::Bus::jsonl:
+      return "jsonl (" + (target.path == "-" ? "standard output" : target.path.string()) + ")";
+    case PublishTarget::Bus::zenoh:
+      break;
+  }
+  return zenoh_address(config.zenoh);
+}
 
 std::vector<std::unique_ptr<Publisher>> make_publishers(const DaemonConfig& config,
                                                         const std::string& calibration,

@@ -16,4 +16,7 @@ std::vector<std::unique_ptr<Publisher>> make_publishers(const DaemonConfig& conf
                                                         const std::string& calibration,
                                                         JsonlPublisher::Earlier earlier);
 
+/// Where the lists for `target` go, for people: the bus and its address.
+std::string address(const PublishTarget& target, const DaemonConfig& config);
+
 }  // namespace bole
