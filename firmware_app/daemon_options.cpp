@@ -75,7 +75,7 @@ DaemonConfig DaemonOptions::load() const {
   return load_daemon_config(file, all);
 }
 
-std::shared_ptr<DaemonOptions> add_daemon_options(CLI::App& app) {
+std::shared_ptr<DaemonOptions> add_config_options(CLI::App& app) {
   auto options = std::make_shared<DaemonOptions>();
   app.add_option("--config", options->config,
                  std::string("Configuration; by default ") + kDefaultConfig + " where there is one")
@@ -89,6 +89,11 @@ std::shared_ptr<DaemonOptions> add_daemon_options(CLI::App& app) {
          "given again, the last of a key holds")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
+  return options;
+}
+
+std::shared_ptr<DaemonOptions> add_daemon_options(CLI::App& app) {
+  auto options = add_config_options(app);
   add_text_option(app, options, "--camera", "camera.file", "FILE",
                   "The camera's camera.toml; by default /etc/bole/camera/camera.toml");
   return options;

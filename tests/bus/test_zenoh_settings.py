@@ -129,7 +129,7 @@ def test_an_endpoint_that_nobody_serves_is_told_once_and_the_other_bus_goes_on(
 
 
 def test_mutual_tls_refuses_who_has_no_certificate_and_says_so(
-    programs, raw_drive, tmp_path, types, certificates
+    programs, bolectl, raw_drive, tmp_path, types, certificates
 ):
     endpoint = free_endpoint("tls")
     ca = {"transport/link/tls/root_ca_certificate": str(certificates / "ca.pem")}
@@ -143,6 +143,12 @@ def test_mutual_tls_refuses_who_has_no_certificate_and_says_so(
                 "zenoh.tls.mutual=true") as boled:
         with Client("zenoh_client.py", endpoint, "subscribe", "bole/**", settings=planner) as admitted:
             assert eventually(lambda: admitted.lists(types))
+        config = tmp_path / "planner.toml"
+        config.write_text("[zenoh.tls]\nmutual = true\n" + "".join(
+            f'{key} = "{certificates / file}"\n' for key, file in
+            [("ca", "ca.pem"), ("certificate", "planner.pem"), ("private_key", "planner.key")]))
+        listened = bolectl("listen", "--zenoh", endpoint, "--config", config, "--count", "1")
+        assert listened.returncode == 0 and "bole/robot/" in listened.stdout, listened.stderr
         stranger = Client("zenoh_client.py", endpoint, "subscribe", "bole/**", settings=ca)
         try:
             assert eventually(lambda: "peer sent no certificates" in boled.log()), boled.log()
