@@ -125,8 +125,10 @@ void add_replay_options(CLI::App& app, const Options& options) {
              "Stamp frames with the time of the replay, not of the recording");
   add_seconds(app, options, "--start", "source.start_s", "What to leave out at the beginning");
   add_seconds(app, options, "--end", "source.end_s", "When to end, counted from the beginning");
-  add_text_option(app, options, "--faults", "source.faults", "FILE",
-                  "A script of what goes wrong with the camera")
+  add_text_option(
+      app, options, "--faults", "source.faults", "FILE",
+      "A script of what goes wrong with the camera; share/bole/examples/faults.toml shows "
+      "every kind")
       ->group(kReplayGroup);
 }
 
