@@ -3,6 +3,7 @@ unpacked."""
 
 import gzip
 import json
+import re
 import shutil
 import subprocess
 
@@ -72,6 +73,14 @@ def test_the_service_runs_what_is_installed(root):
     assert (root / "usr/lib/udev/rules.d/70-bole-cameras.rules").exists()
     assert (root / "etc/bole/camera").is_dir()
     assert not (root / "usr/local").exists()
+
+
+def test_the_examples_name_where_the_types_are(root):
+    examples = list((root / "usr/share/bole/examples").glob("subscribe_*"))
+    named = {path for example in examples
+             for path in re.findall("/usr/share/bole/[a-z]+", example.read_text())}
+    assert named == {"/usr/share/bole/python", "/usr/share/bole/types"}
+    assert all((root / path.lstrip("/")).is_dir() for path in named)
 
 
 def test_the_scripts_of_the_installation_are_shell(packages, tmp_path):
