@@ -180,6 +180,12 @@ def test_sim_leaves_no_frames_of_two_recordings_in_one_folder(bolectl, tmp_path)
     assert "frame_000001.jpg" in shorter.stderr and shorter.stderr.count("\n") == 1
 
 
+def test_sim_finds_the_example_camera_from_wherever_it_is_started(programs, tmp_path):
+    subprocess.run([programs / "bolectl", "sim", "--out", "drive", "--frames", "1", "--seed", "1"],
+                   cwd=tmp_path, check=True)
+    assert (tmp_path / "drive/camera.toml").exists()
+
+
 def test_doctor_says_what_is_well_and_what_mends_the_rest(bolectl, drive):
     common = ["doctor", "--camera", drive / "camera.toml", "--publish", "lcm"]
     well = bolectl(*common, "--source", f"replay:{drive}")
