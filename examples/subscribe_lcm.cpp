@@ -1,4 +1,5 @@
-// Trees from LCM. lcm-gen -x /usr/local/share/bole/types/*.lcm && g++ subscribe_lcm.cpp -I. -llcm
+// Trees from LCM. lcm-gen -x /usr/share/bole/types/*.lcm && g++ subscribe_lcm.cpp -I. -llcm
+// (/usr/local/share/bole/types where bole was installed without its package)
 #include <cstdio>
 
 #include <lcm/lcm-cpp.hpp>

@@ -1,5 +1,6 @@
 """Trees from Zenoh: pip install eclipse-zenoh;
-PYTHONPATH=/usr/local/share/bole/python python3 subscribe_zenoh.py [tcp/127.0.0.1:7447]"""
+PYTHONPATH=/usr/share/bole/python python3 subscribe_zenoh.py [tcp/127.0.0.1:7447]
+(/usr/local/share/bole/python where bole was installed without its package)"""
 
 import sys
 

@@ -75,7 +75,7 @@ DaemonConfig DaemonOptions::load() const {
   return load_daemon_config(file, all);
 }
 
-std::shared_ptr<DaemonOptions> add_daemon_options(CLI::App& app) {
+std::shared_ptr<DaemonOptions> add_config_options(CLI::App& app) {
   auto options = std::make_shared<DaemonOptions>();
   app.add_option("--config", options->config,
                  std::string("Configuration; by default ") + kDefaultConfig + " where there is one")
@@ -89,6 +89,11 @@ std::shared_ptr<DaemonOptions> add_daemon_options(CLI::App& app) {
          "given again, the last of a key holds")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
+  return options;
+}
+
+std::shared_ptr<DaemonOptions> add_daemon_options(CLI::App& app) {
+  auto options = add_config_options(app);
   add_text_option(app, options, "--camera", "camera.file", "FILE",
                   "The camera's camera.toml; by default /etc/bole/camera/camera.toml");
   return options;
@@ -105,7 +110,8 @@ void add_publish_option(CLI::App& app, const Options& options) {
          [options](const std::vector<std::string>& targets) {
            options->named.push_back({"--publish", {"publish.to", list_of(targets)}});
          },
-         "lcm, zenoh, jsonl:PATH or jsonl:- for standard output; several with commas")
+         "lcm, zenoh, jsonl:PATH (lists are added to the file; in lockstep it is made anew) or "
+         "jsonl:- for standard output; several with commas")
       ->type_name("BUS")
       ->delimiter(',');
 }
@@ -119,8 +125,10 @@ void add_replay_options(CLI::App& app, const Options& options) {
              "Stamp frames with the time of the replay, not of the recording");
   add_seconds(app, options, "--start", "source.start_s", "What to leave out at the beginning");
   add_seconds(app, options, "--end", "source.end_s", "When to end, counted from the beginning");
-  add_text_option(app, options, "--faults", "source.faults", "FILE",
-                  "A script of what goes wrong with the camera")
+  add_text_option(
+      app, options, "--faults", "source.faults", "FILE",
+      "A script of what goes wrong with the camera; share/bole/examples/faults.toml shows "
+      "every kind")
       ->group(kReplayGroup);
 }
 

@@ -25,6 +25,8 @@ struct DaemonOptions {
   DaemonConfig load() const;
 };
 
+/// --config and --set.
+std::shared_ptr<DaemonOptions> add_config_options(CLI::App& app);
 /// --config, --set and --camera.
 std::shared_ptr<DaemonOptions> add_daemon_options(CLI::App& app);
 /// --source.

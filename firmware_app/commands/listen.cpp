@@ -1,10 +1,12 @@
 #include <poll.h>
 
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <map>
 #include <memory>
 #include <set>
+#include <utility>
 
 #include <spdlog/spdlog.h>
 
@@ -12,6 +14,7 @@
 #include "base/errors.h"
 #include "base/stop_signals.h"
 #include "commands/commands.h"
+#include "daemon_options.h"
 #include "geometry/angles.h"
 #include "program.h"
 #include "publish/decoder.h"
@@ -25,9 +28,10 @@
 namespace bole {
 namespace {
 
+constexpr std::chrono::seconds kPatience{3};  // until silence is worth a word
+
 struct ListenOptions {
-  std::string lcm_url = kDefaultLcmUrl;
-  std::string zenoh_endpoint;
+  bool zenoh = false;  // else LCM
   std::int64_t count = 0;
   bool json = false;
 };
@@ -78,6 +82,7 @@ class Listener {
   explicit Listener(const ListenOptions& options) : options_(options) {}
 
   void receive(const std::string& stream, MessageKind kind, std::span<const std::byte> bytes) {
+    heard_ = true;
     try {
       if (kind == MessageKind::trees) {
         const tree_list_t list = decode_tree_list(bytes);
@@ -93,6 +98,12 @@ class Listener {
       if (named_.size() < kMostNamed && named_.insert(text).second) spdlog::warn("{}", text);
     }
     flush_output();  // a reader that has gone ends us
+  }
+
+  /// True once: when nothing at all has come for a while.
+  bool worries() {
+    const bool too_long = std::chrono::steady_clock::now() - start_ > kPatience;
+    return !heard_ && too_long && !std::exchange(worried_, true);
   }
 
   bool done() const { return options_.count > 0 && lists_ >= options_.count; }
@@ -122,21 +133,27 @@ class Listener {
 
   const ListenOptions& options_;
   std::map<std::string, StreamFigures> figures_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  bool heard_ = false;
+  bool worried_ = false;
   std::int64_t lists_ = 0;
   std::set<std::string> named_;
   std::string line_;
 };
 
-void listen_lcm(const std::string& url, Listener& listener, const StopSignals& stop) {
-  LcmSubscriber lcm(
-      parse_lcm_url(url, "--lcm", ""), [&](MessageKind kind, std::span<const std::byte> bytes) {
-        listener.receive(kind == MessageKind::trees ? kTreesChannel : kStatusChannel, kind, bytes);
-      });
+void listen_lcm(const LcmUrl& url, Listener& listener, const StopSignals& stop) {
+  LcmSubscriber lcm(url, [&](MessageKind kind, std::span<const std::byte> bytes) {
+    listener.receive(kind == MessageKind::trees ? kTreesChannel : kStatusChannel, kind, bytes);
+  });
   std::array<pollfd, 2> waits{pollfd{stop.fd(), POLLIN, 0}, pollfd{lcm.fd(), POLLIN, 0}};
   while (!listener.done()) {
-    if (::poll(waits.data(), waits.size(), -1) < 0) continue;
+    if (::poll(waits.data(), waits.size(), 500) < 0) continue;
     if (waits[0].revents != 0) break;
     if (waits[1].revents != 0) lcm.handle();
+    if (!listener.worries()) continue;
+    spdlog::warn("nothing on {} yet; is boled running, does it publish to lcm, at this address{}?",
+                 url.text(),
+                 url.ttl == 0 ? ", and on this machine (its ttl=0 reaches no other)" : "");
   }
 }
 
@@ -152,11 +169,17 @@ void take(const ZenohMessage& message, Listener& listener) {
   }
 }
 
-void listen_zenoh(const std::string& endpoint, Listener& listener, const StopSignals& stop) {
-  ZenohConfig config;
-  config.file = "--zenoh";
+// Its own words on why it does not connect: the first ones are the most precise.
+std::string told_by_zenoh(const ZenohState& state) {
+  const std::vector<ZenohWarning> warnings = ZenohSession::take_warnings();
+  return "(" + (warnings.empty() ? state.error : warnings.front().text) + ")";
+}
+
+// `config`: of the daemon, but connecting to --zenoh; its TLS holds here too.
+void listen_zenoh(ZenohConfig config, Listener& listener, const StopSignals& stop) {
   config.mode = "client";
-  config.connect = {endpoint};
+  config.listen.clear();
+  const std::string& endpoint = config.connect.front();
   ZenohSession session(config, std::nullopt, {"bole/**"});
   pollfd stopped{stop.fd(), POLLIN, 0};
   bool told = false;
@@ -165,26 +188,30 @@ void listen_zenoh(const std::string& endpoint, Listener& listener, const StopSig
       if (!listener.done()) take(message, listener);
     }
     const ZenohState state = session.state();
-    if (!state.connected() && !told && !state.error.empty()) {
-      spdlog::warn("{}: {}", endpoint, state.error);
+    const bool refused = !state.connected() && !state.error.empty();
+    if (refused && !told) {
+      spdlog::warn("cannot connect to {} yet; is boled running there, does it publish to zenoh? {}",
+                   endpoint, told_by_zenoh(state));
+    } else if (!refused && listener.worries()) {
+      spdlog::warn("nothing on {} yet; is boled running, and does it publish to zenoh?", endpoint);
     }
-    told = !state.connected() && (told || !state.error.empty());
+    told = !state.connected() && (told || refused);
   }
 }
 #else
-void listen_zenoh(const std::string& /*endpoint*/, Listener& /*listener*/,
+void listen_zenoh(const ZenohConfig& /*config*/, Listener& /*listener*/,
                   const StopSignals& /*stop*/) {
   throw ConfigError("--zenoh", "", "is not in this build", "install cargo and build again");
 }
 #endif
 
-void listen(const ListenOptions& options) {
+void listen(const DaemonConfig& config, const ListenOptions& options) {
   const StopSignals stop;
   Listener listener(options);
-  if (options.zenoh_endpoint.empty()) {
-    listen_lcm(options.lcm_url, listener, stop);
+  if (options.zenoh) {
+    listen_zenoh(config.zenoh, listener, stop);
   } else {
-    listen_zenoh(options.zenoh_endpoint, listener, stop);
+    listen_lcm(config.lcm, listener, stop);
   }
   listener.summarize();
 }
@@ -194,12 +221,18 @@ void listen(const ListenOptions& options) {
 void add_listen(CLI::App& app) {
   auto options = std::make_shared<ListenOptions>();
   CLI::App* command = app.add_subcommand("listen", "Shows the lists and states on a bus");
-  CLI::Option* lcm = command->add_option("--lcm", options->lcm_url, "LCM's address")
-                         ->type_name("URL")
-                         ->capture_default_str();
+  const auto daemon = add_config_options(*command);
+  CLI::Option* lcm = add_text_option(*command, daemon, "--lcm", "lcm.url", "URL",
+                                     "LCM's address; by default that of the configuration");
   command
-      ->add_option("--zenoh", options->zenoh_endpoint,
-                   "Listen on Zenoh instead, as at tcp/127.0.0.1:7447")
+      ->add_option_function<std::string>(
+          "--zenoh",
+          [options, daemon](const std::string& endpoint) {
+            options->zenoh = true;
+            daemon->named.push_back(
+                {"--zenoh", {"zenoh.connect", "[" + toml_text(endpoint) + "]"}});
+          },
+          "Listen on Zenoh instead, as at tcp/127.0.0.1:7447, with TLS as the configuration has it")
       ->type_name("ENDPOINT")
       ->excludes(lcm);
   command->add_option("--count", options->count, "Stop after so many lists; 0: never")
@@ -208,7 +241,7 @@ void add_listen(CLI::App& app) {
       ->check(CLI::Range(0, 1'000'000'000));
   command->add_flag("--json", options->json,
                     "Print a line of JSON a message, and one a stream at the end");
-  command->callback([options] { listen(*options); });
+  command->callback([options, daemon] { listen(daemon->load(), *options); });
 }
 
 }  // namespace bole

@@ -28,7 +28,8 @@ class FakeDaemon {
   FakeDaemon(const DaemonConfig& config, std::uint64_t seed)
       : wood_(seed),
         telemetry_(BOLE_VERSION, config.camera.name),
-        buses_(make_publishers(config, "{}"), WhenFull::overwrite, [] {}) {
+        buses_(make_publishers(config, "{}", JsonlPublisher::Earlier::kept), WhenFull::overwrite,
+               [] {}) {
     list_.source = ListSource::fake;
     list_.camera = config.camera.name;
     telemetry_.capture_event({CameraState::streaming, "fake", false});
@@ -50,14 +51,7 @@ class FakeDaemon {
   // A bus that takes nothing is not waited for.
   void interrupt() { buses_.interrupt(); }
 
-  void publish_status() {
-    status_t status = telemetry_.status(clock_.mono_ns(), false);
-    status.utime = clock_.utc_us();
-    status.mono_ns = clock_.mono_ns();
-    status.buses = buses_.health();
-    encode_status(std::move(status), status_bytes_);
-    buses_.offer(MessageKind::status, status_bytes_, "", clock_.mono_ns());
-  }
+  void publish_status() { buses_.offer(telemetry_.status(clock_.mono_ns(), false), clock_); }
 
  private:
   SystemClock clock_;
@@ -65,7 +59,6 @@ class FakeDaemon {
   Telemetry telemetry_;
   TreeListEncoder encoder_;
   TreeList list_;
-  std::vector<std::byte> status_bytes_;
   Buses buses_;
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// That of the source tree where we stand in it, else the installed one.
+// That of the source tree where we stand in it, else the one installed, or in the build folder.
 std::string example_camera() {
   const fs::path file = "calib/example/camera.toml";
   if (fs::exists(file)) return file;

@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <climits>
+#include <fstream>
 #include <system_error>
 
 #include "base/errors.h"
@@ -19,13 +20,26 @@ namespace {
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
+int open_target(const std::filesystem::path& target, JsonlPublisher::Earlier earlier) {
+  if (target == "-") return ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
+  const int emptied = earlier == JsonlPublisher::Earlier::erased ? O_TRUNC : 0;
+  // Not to wait for a pipe's reader, whom nobody could interrupt.
+  constexpr int kFlags = O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NONBLOCK;
+  return ::open(target.c_str(), kFlags | emptied, 0644);
+}
+
+// A daemon before us may have been cut off in the middle of a line.
+bool ends_within_a_line(const std::filesystem::path& target) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(target, error)) return false;
+  std::ifstream file(target, std::ios::binary);
+  return file.seekg(-1, std::ios::end) && file.get() != '\n';
+}
+
 }  // namespace
 
-JsonlPublisher::JsonlPublisher(const std::filesystem::path& target)
-    : fd_(target == "-" ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)
-                        // Not to wait for a pipe's reader, whom nobody could interrupt.
-                        : ::open(target.c_str(),
-                                 O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0644)) {
+JsonlPublisher::JsonlPublisher(const std::filesystem::path& target, Earlier earlier)
+    : fd_(open_target(target, earlier)), torn_(ends_within_a_line(target)) {
   if (!fd_) {
     throw ConfigError("publish", "jsonl:" + target.string(), "cannot be written: " + reason(errno),
                       "give a path that may be written to, or - for standard output");

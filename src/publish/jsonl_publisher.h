@@ -13,9 +13,13 @@ namespace bole {
 /// only taken in part, as by a full disk, is left behind; the next begins on a new line.
 class JsonlPublisher : public Publisher {
  public:
-  /// `target`: a path, whose file is made anew, or "-" for standard output. Throws ConfigError when
-  /// it cannot be written.
-  explicit JsonlPublisher(const std::filesystem::path& target);
+  /// What becomes of the lists that the file holds already.
+  enum class Earlier { kept, erased };
+
+  /// `target`: a path, or "-" for standard output. Every line goes to the end of the file, also
+  /// after somebody else has cut it, as logrotate's copytruncate does. Throws ConfigError when it
+  /// cannot be written.
+  explicit JsonlPublisher(const std::filesystem::path& target, Earlier earlier = Earlier::kept);
 
   std::string name() const override { return "jsonl"; }
   bool carries(MessageKind kind) const override { return kind == MessageKind::trees; }
@@ -29,7 +33,7 @@ class JsonlPublisher : public Publisher {
   UniqueFd fd_;
   Wakeup interrupted_;
   std::string line_;
-  bool torn_ = false;  // only the beginning of the last line was taken
+  bool torn_;  // the file ends within a line
 };
 
 }  // namespace bole

@@ -65,8 +65,7 @@ struct ZenohWarning {
   std::uint64_t count = 0;
 };
 
-/// Throws ConfigError for settings that cannot work, as ZenohSession does but for ports in use, and
-/// touches no network.
+/// Throws ConfigError for settings that cannot work, as ZenohSession does, and touches no network.
 void check_zenoh(const ZenohConfig& config);
 
 /// A Zenoh session that opens in the background and finds its way back after every outage. It may
@@ -76,7 +75,7 @@ class ZenohSession {
   /// Publishes and answers as `identity` and holds its liveliness token bole/<robot>/<camera>/alive
   /// (none: offers nothing); receives what matches the key expressions `subscribe`. Throws
   /// ConfigError for settings that cannot work (malformed endpoint, unreadable or unfit
-  /// certificate, port in use); what may mend itself is tried again and shown in state().
+  /// certificate); what may mend itself, as a port in use, is tried again and shown in state().
   explicit ZenohSession(const ZenohConfig& config,
                         const std::optional<ZenohIdentity>& identity = std::nullopt,
                         const std::vector<std::string>& subscribe = {});

@@ -1,6 +1,9 @@
 #include "service/buses.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "publish/encoder.h"
 
 namespace bole {
 
@@ -16,6 +19,14 @@ void Buses::offer(MessageKind kind, std::span<const std::byte> bytes, std::strin
                   std::int64_t processed_ns, std::int64_t seq) {
   for (const auto& worker : workers_) worker->offer(kind, bytes, file, processed_ns, seq);
   bell_->ring();
+}
+
+void Buses::offer(status_t status, const Clock& clock) {
+  status.utime = clock.utc_us();
+  status.mono_ns = clock.mono_ns();
+  status.buses = health();
+  encode_status(std::move(status), status_bytes_);
+  offer(MessageKind::status, status_bytes_, "", SystemClock().mono_ns());
 }
 
 void Buses::close() {

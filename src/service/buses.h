@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/clock.h"
+#include "bole/status_t.hpp"
 #include "service/bus_worker.h"
 
 namespace bole {
@@ -26,6 +28,8 @@ class Buses {
   /// As BusWorker::offer().
   void offer(MessageKind kind, std::span<const std::byte> bytes, std::string_view file,
              std::int64_t processed_ns, std::int64_t seq = 0);
+  /// Completes `status` with what `clock` reads and how each bus does, and offers it.
+  void offer(status_t status, const Clock& clock);
   void close();
   void interrupt() noexcept;
   bool finished() const;
@@ -34,6 +38,7 @@ class Buses {
   std::vector<bus_t> health() const;
 
  private:
+  std::vector<std::byte> status_bytes_;
   const std::shared_ptr<Doorbell> bell_ = std::make_shared<Doorbell>();
   std::vector<std::unique_ptr<BusWorker>> workers_;
 };

@@ -21,13 +21,14 @@
 namespace bole {
 namespace {
 
-WarpTable open_table(const DaemonConfig::CameraPart& part, const Camera& camera) {
-  if (!part.table.empty()) return WarpTable::load(part.table, camera.digest);
+CachedTable open_table(const DaemonConfig::CameraPart& part, const Camera& camera) {
+  if (!part.table.empty())
+    return {WarpTable::load(part.table, camera.digest), false, "", part.table};
   CachedTable cached = load_or_build_warp_table(
       camera, part.cache_directory.empty() ? default_cache_directory() : part.cache_directory);
   if (cached.built) spdlog::info("built the warp table");
   if (!cached.trouble.empty()) spdlog::warn("the warp table is not kept: {}", cached.trouble);
-  return std::move(cached.table);
+  return cached;
 }
 
 void lock_memory() {
@@ -70,6 +71,16 @@ void refuse_losses(const std::vector<bus_t>& buses) {
   }
 }
 
+void log_start(const DaemonConfig& config, const std::string& version, const CachedTable& table) {
+  std::string buses;
+  for (const PublishTarget& target : config.publish.to) {
+    buses += (buses.empty() ? "" : ", ") + address(target, config);
+  }
+  spdlog::info("bole {}: configuration {}; camera {} of {}; table {}; publishes to {}", version,
+               config.file, config.camera.name, config.camera.file.string(),
+               table.trouble.empty() ? table.path.string() : "in memory only", buses);
+}
+
 void log_summary(const Telemetry::Summary& summary, const std::vector<bus_t>& buses,
                  double elapsed) {
   const auto ms = [](std::int64_t ns) { return static_cast<double>(ns) / 1e6; };
@@ -93,10 +104,12 @@ void log_summary(const Telemetry::Summary& summary, const std::vector<bus_t>& bu
 void run_daemon(const DaemonConfig& config, const std::string& version, int stop_fd) {
   const Camera camera = load_camera(config.camera.file);
   SourceSetup setup = make_source(config, camera);
-  const WarpTable table = open_table(config.camera, camera);
+  const CachedTable cached = open_table(config.camera, camera);
   if (config.service.realtime_priority > 0) set_realtime_priority(config.service.realtime_priority);
-  std::vector<std::unique_ptr<Publisher>> publishers =
-      make_publishers(config, calibration_json(camera));
+  // In lockstep a file holds the same bytes after every run.
+  using Earlier = JsonlPublisher::Earlier;
+  std::vector<std::unique_ptr<Publisher>> publishers = make_publishers(
+      config, calibration_json(camera), setup.lockstep ? Earlier::erased : Earlier::kept);
 
   ProcessorOptions options;
   options.mode = config.detect.mode;
@@ -106,13 +119,14 @@ void run_daemon(const DaemonConfig& config, const std::string& version, int stop
   options.config_crc = config_crc(config, camera.digest);
   options.source = setup.kind;
   options.lockstep = setup.lockstep;
-  Processor processor(table, camera.config.mount.height, camera.config.search, options,
+  Processor processor(cached.table, camera.config.mount.height, camera.config.search, options,
                       *setup.clock);
   Telemetry telemetry(version, config.camera.name);
   if (config.service.lock_memory) lock_memory();
   std::optional<Trace> trace;
   if (!config.service.trace.empty()) trace.emplace(config.service.trace);
 
+  log_start(config, version, cached);
   const SystemClock clock;
   const std::int64_t start_ns = clock.mono_ns();
   Pipeline pipeline(*setup.source, *setup.clock, processor, telemetry, std::move(publishers),

@@ -48,6 +48,28 @@ void lay_over(toml::table& root, const Setting& setting) {
   table->insert_or_assign(rest, *parse_value(setting).get("value"));
 }
 
+void resolve_after(toml::node* node, std::string_view prefix, const std::filesystem::path& folder) {
+  toml::value<std::string>* text = node == nullptr ? nullptr : node->as_string();
+  if (text == nullptr || !text->get().starts_with(prefix))
+    return;  // what it is instead is told later
+  const std::string path = text->get().substr(prefix.size());
+  if (path.empty() || path == "-") return;
+  *text = std::string(prefix) + (folder / path).lexically_normal().string();
+}
+
+// Paths in a file are relative to its own folder, wherever the daemon is started.
+void resolve_paths(toml::table& root, const std::filesystem::path& folder) {
+  for (const char* key : {"camera.file", "camera.table", "camera.cache_directory", "source.faults",
+                          "zenoh.config_file", "zenoh.tls.ca", "zenoh.tls.certificate",
+                          "zenoh.tls.private_key", "service.trace"}) {
+    resolve_after(root.at_path(key).node(), "", folder);
+  }
+  resolve_after(root.at_path("source.uri").node(), "replay:", folder);
+  if (toml::array* targets = root.at_path("publish.to").as_array()) {
+    for (toml::node& target : *targets) resolve_after(&target, "jsonl:", folder);
+  }
+}
+
 std::string default_camera_name(const std::filesystem::path& camera_toml) {
   const auto file = std::filesystem::absolute(camera_toml).lexically_normal();
   std::string name = file.parent_path().filename().string();
@@ -108,6 +130,7 @@ PublishTarget target(const TomlTable& table, const std::string& text) {
 
 void read_publish(TomlTable table, DaemonConfig::PublishPart& publish) {
   const std::vector<std::string> texts = table.texts("to", {"lcm"});
+  if (texts.empty()) table.fail("to", "is empty", "name lcm, zenoh, jsonl:PATH or several of them");
   for (const std::string& text : texts) {
     publish.to.push_back(target(table, text));
     if (std::ranges::count(texts, text) > 1) table.fail("to", "names " + text + " twice", "");
@@ -166,6 +189,7 @@ DaemonConfig load_daemon_config(const std::optional<std::filesystem::path>& file
   std::string origin = file ? file->string() : "command line";
   toml::table merged =
       file ? parse_toml(read_text_file(*file, kMostConfigBytes), origin) : toml::table{};
+  if (file) resolve_paths(merged, std::filesystem::absolute(*file).parent_path());
   for (const Setting& setting : settings) lay_over(merged, setting);
   if (file && !settings.empty()) origin += " with the command line";
 

@@ -82,6 +82,7 @@ Setting parse_setting(std::string_view text);
 std::string toml_text(std::string_view text);
 
 /// Reads `file` (none: the defaults) and lays the settings over it, the later over the earlier.
+/// Relative paths in the file become those in its own folder; in settings they are as they are.
 /// Throws ConfigError for unknown keys and for whatever is not as it must be.
 DaemonConfig load_daemon_config(const std::optional<std::filesystem::path>& file,
                                 const std::vector<Setting>& settings);

@@ -1,8 +1,10 @@
 #include "service/doctor.h"
 
+#include <pwd.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <functional>
 #include <system_error>
 
@@ -16,12 +18,25 @@
 namespace bole {
 namespace {
 
-// `check` returns what is good to know and throws what is wrong.
-Finding find(const std::string& name, const std::function<std::string()>& check) {
+std::string user_name() {
+  const passwd* const user = ::getpwuid(::geteuid());
+  return user != nullptr ? user->pw_name : std::to_string(::geteuid());
+}
+
+// Said of what another user may find otherwise. `service`: what holds for the service's own user,
+// who is us where systemd has given us a cache.
+std::string as_user(const std::string& service) {
+  const bool we_are_it = std::getenv("CACHE_DIRECTORY") != nullptr;
+  return " (as user " + user_name() + (we_are_it ? "" : "; the service " + service) + ")";
+}
+
+// `check` returns what is good to know and throws what is wrong; `remark` stands behind either.
+Finding look(const std::string& name, const std::string& remark,
+             const std::function<std::string()>& check) {
   try {
-    return {name, true, check()};
+    return {name, true, check() + remark};
   } catch (const std::exception& error) {
-    return {name, false, error.what()};
+    return {name, false, error.what() + remark};
   }
 }
 
@@ -45,7 +60,8 @@ std::string device_detail(const std::string& name) {
   const std::filesystem::path node = find_v4l2_device(name);
   if (::access(node.c_str(), R_OK | W_OK) != 0) {
     throw std::runtime_error(node.string() +
-                             " may not be opened; add the user to its group: adduser USER video");
+                             " may not be opened; add the user to its group: adduser " +
+                             user_name() + " video");
   }
   const V4l2Device device(node);
   device.capture_type();
@@ -125,21 +141,47 @@ std::string name(PublishTarget::Bus bus) {
                                             : "jsonl";
 }
 
+// What as_user() says of each check; empty where the user makes no difference.
+
+std::string table_remark(const DaemonConfig::CameraPart& part) {
+  return as_user(part.table.empty() && part.cache_directory.empty()
+                     ? "keeps its own in /var/cache/bole"
+                     : "has a user of its own");
+}
+
+std::string source_remark(const std::string& uri) {
+  return as_user(uri.starts_with("replay:") ? "has a user of its own"
+                                            : "has a user of its own, in the group video");
+}
+
+std::string target_remark(const PublishTarget& target, const ZenohConfig& zenoh) {
+  using Bus = PublishTarget::Bus;
+  const bool files =
+      !zenoh.config_file.empty() || !zenoh.tls.ca.empty() || !zenoh.tls.certificate.empty();
+  if (target.bus == Bus::zenoh && files) return as_user("has a user of its own");
+  if (target.bus == Bus::jsonl && target.path != "-")
+    return as_user("writes in /var/lib/bole only");
+  return "";
+}
+
 }  // namespace
 
 std::vector<Finding> examine(const DaemonConfig& config) {
   std::vector<Finding> findings;
   std::optional<Camera> camera;
-  findings.push_back(find("camera files", [&] {
+  findings.push_back(look("camera files", as_user("has a user of its own"), [&] {
     camera = load_camera(config.camera.file);
     return config.camera.file.string();
   }));
   if (camera) {
-    findings.push_back(find("warp table", [&] { return table_detail(config.camera, *camera); }));
-    findings.push_back(find("source", [&] { return source_detail(config, *camera); }));
+    findings.push_back(look("warp table", table_remark(config.camera),
+                            [&] { return table_detail(config.camera, *camera); }));
+    findings.push_back(look("source", source_remark(config.source.uri),
+                            [&] { return source_detail(config, *camera); }));
   }
   for (const PublishTarget& target : config.publish.to) {
-    findings.push_back(find(name(target.bus), [&] { return target_detail(target, config); }));
+    findings.push_back(look(name(target.bus), target_remark(target, config.zenoh),
+                            [&] { return target_detail(target, config); }));
   }
   return findings;
 }

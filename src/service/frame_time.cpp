@@ -3,15 +3,12 @@
 namespace bole {
 
 FrameTime frame_time(const FrameStamp& stamp, const Clock& clock) {
-  switch (stamp.clock) {
-    case StampClock::replay:
-      return {stamp.ns / 1000, stamp.mono_ns};
-    case StampClock::realtime:
-      return {stamp.ns / 1000, clock.mono_ns() - (clock.utc_us() * 1000 - stamp.ns)};
-    case StampClock::monotonic:
-      break;
+  if (stamp.clock == StampClock::replay) return {stamp.ns / 1000, stamp.mono_ns, stamp.ns};
+  if (stamp.clock == StampClock::realtime) {
+    const std::int64_t mono_ns = clock.mono_ns() - (clock.utc_us() * 1000 - stamp.ns);
+    return {stamp.ns / 1000, mono_ns, mono_ns};
   }
-  return {clock.utc_us() - (clock.mono_ns() - stamp.ns) / 1000, stamp.ns};
+  return {clock.utc_us() - (clock.mono_ns() - stamp.ns) / 1000, stamp.ns, stamp.ns};
 }
 
 }  // namespace bole

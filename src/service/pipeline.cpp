@@ -138,13 +138,7 @@ void Pipeline::trace(const Captured& captured, const Processor::Result& result) 
 }
 
 void Pipeline::publish_status(bool stopping) {
-  const std::int64_t at_ns = now_ns();
-  status_t status = telemetry_.status(at_ns, stopping);
-  status.utime = clock_.utc_us();
-  status.mono_ns = clock_.mono_ns();
-  status.buses = buses_.health();
-  encode_status(std::move(status), status_bytes_);
-  buses_.offer(MessageKind::status, status_bytes_, "", at_ns);
+  buses_.offer(telemetry_.status(now_ns(), stopping), clock_);
 }
 
 void Pipeline::run(int stop_fd) {

@@ -64,7 +64,6 @@ class Pipeline {
   Supervisor supervisor_;
   Mailbox<Captured> frames_;
   Buses buses_;
-  std::vector<std::byte> status_bytes_;
   std::thread capture_thread_;
   std::thread process_thread_;
 };

@@ -35,11 +35,10 @@ void Processor::leave_out_improbable() {
   });
 }
 
-// Seconds since the last frame.
-double Processor::step_to(std::int64_t captured_ns) {
-  const double elapsed =
-      static_cast<double>(captured_ns - last_captured_ns_.value_or(captured_ns)) / 1e9;
-  last_captured_ns_ = captured_ns;
+// Seconds since the last frame, as the camera saw them pass.
+double Processor::step_to(std::int64_t scene_ns) {
+  const double elapsed = static_cast<double>(scene_ns - last_scene_ns_.value_or(scene_ns)) / 1e9;
+  last_scene_ns_ = scene_ns;
   return elapsed;
 }
 
@@ -70,7 +69,7 @@ Processor::Result Processor::process(const Frame& frame) {
   const PanoramaView panorama = warper_.warp(frame.image());
   stepped();
   result.captured = frame_time(frame.stamp(), clock_);
-  const double elapsed = step_to(result.captured.mono_ns);
+  const double elapsed = step_to(result.captured.scene_ns);
   choose(detect(panorama, elapsed));
   stepped();
   result.vision = vision_.observe(panorama);

@@ -54,7 +54,7 @@ class Processor {
   std::int64_t trees_rejected() const { return encoder_.rejected(); }
 
  private:
-  double step_to(std::int64_t captured_ns);
+  double step_to(std::int64_t scene_ns);
   std::span<const Tree> detect(const PanoramaView& panorama, double elapsed);
   void choose(std::span<const Tree> found);
   void leave_out_improbable();
@@ -72,7 +72,7 @@ class Processor {
   TreeList list_;
   std::vector<Tree> trees_;
   Tracker tracker_;
-  std::optional<std::int64_t> last_captured_ns_;
+  std::optional<std::int64_t> last_scene_ns_;
 };
 
 }  // namespace bole

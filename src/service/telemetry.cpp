@@ -57,12 +57,19 @@ void Telemetry::capture_event(const CameraEvent& event) {
     spdlog::log(level, "state {}: {}", name(event.state), event.reason);
   }
   const std::lock_guard lock(mutex_);
+  if (event.state != event_.state) forget_frames();
   event_ = event;
   if (streaming) {
     source_ = event.reason;
   } else if (event.state != CameraState::opening) {
     last_error_ = event.reason;
   }
+}
+
+// What frames have shown holds as long as they come.
+void Telemetry::forget_frames() {
+  degraded_reason_.clear();
+  recent_count_ = 0;
 }
 
 void Telemetry::capture_counts(const CaptureCounts& counts) {
@@ -96,7 +103,7 @@ void Telemetry::note(const std::string& trouble) {
 
 void Telemetry::processed(std::int64_t latency_ns, std::int64_t trees_rejected) {
   const std::lock_guard lock(mutex_);
-  recent_.at(static_cast<std::size_t>(lists_) % kRecent) = latency_ns;
+  recent_.at(recent_count_++ % kRecent) = latency_ns;
   ++lists_;
   unusable_in_a_row_ = 0;
   latency_.add(latency_ns);
@@ -144,13 +151,12 @@ status_t Telemetry::status(std::int64_t now_ns, bool stopping) {
   const bool streaming = event_.state == CameraState::streaming;
   status.state = wire_state(event_.state);
   if (!streaming) status.state_reason = event_.reason;
-  if (streaming && unusable_in_a_row_ >= kUnusableInARow) {
+  const bool of_use = streaming && unusable_in_a_row_ < kUnusableInARow;
+  if (streaming && !of_use) {
     status.state = status_t::STATE_STALLED;
     status.state_reason = "no usable frame: " + last_error_;
   }
   if (stopping) status.state = status_t::STATE_STOPPING;
-  status.degraded = degraded_reason_.empty() ? 0 : 1;
-  status.degraded_reason = degraded_reason_;
   status.frames = capture_.frames;
   status.lists = lists_;
   status.drops = drops();
@@ -161,14 +167,20 @@ status_t Telemetry::status(std::int64_t now_ns, bool stopping) {
   status.frame_rate = frame_rate_;
   status.list_rate = list_rate_;
 
+  if (of_use) tell_frames(status);  // else the last ones may still be worked on
+  return status;
+}
+
+void Telemetry::tell_frames(status_t& status) const {
+  status.degraded = degraded_reason_.empty() ? 0 : 1;
+  status.degraded_reason = degraded_reason_;
+
   std::array<std::int64_t, kRecent> sorted = recent_;
-  const auto count = std::min(static_cast<std::size_t>(lists_), kRecent);
-  const std::span<std::int64_t> values(sorted.data(), count);
+  const std::span<std::int64_t> values(sorted.data(), std::min(recent_count_, kRecent));
   std::ranges::sort(values);
   status.latency_p50_ms = ms(quantile(values, 0.5));
   status.latency_p99_ms = ms(quantile(values, 0.99));
   status.latency_max_ms = ms(values.empty() ? 0 : values.back());
-  return status;
 }
 
 void Telemetry::take_rates(std::int64_t now_ns) {

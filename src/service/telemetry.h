@@ -40,7 +40,8 @@ class Telemetry {
   void vision(std::string_view reason);
 
   /// The status now, without the clocks and the buses. Rates are over the time since the last call,
-  /// or the one before where that was less than half a second ago.
+  /// or the one before where that was less than half a second ago. What frames show (degraded,
+  /// latencies) is told while the camera streams, and of frames since it does.
   status_t status(std::int64_t now_ns, bool stopping);
 
   struct Summary {
@@ -57,6 +58,8 @@ class Telemetry {
   std::vector<counter_t> drops() const;
   std::vector<counter_t> camera_events() const;
   void note(const std::string& trouble);
+  void forget_frames();
+  void tell_frames(status_t& status) const;
   void take_rates(std::int64_t now_ns);
 
   mutable std::mutex mutex_;
@@ -74,6 +77,7 @@ class Telemetry {
   std::set<std::string> told_;
   DurationHistogram latency_;
   std::array<std::int64_t, kRecent> recent_{};  // latencies, a ring
+  std::size_t recent_count_ = 0;                // of them since the camera streams
 
   std::int64_t start_ns_ = 0;
   std::int64_t rates_taken_ns_ = 0;

@@ -68,12 +68,14 @@ std::filesystem::path default_cache_directory() {
 
 CachedTable load_or_build_warp_table(const Camera& camera,
                                      const std::filesystem::path& cache_directory) {
-  if (cache_directory.empty()) return {build_warp_table(camera), true, "no cache directory is set"};
+  if (cache_directory.empty()) {
+    return {build_warp_table(camera), true, "no cache directory is set", ""};
+  }
   const std::filesystem::path path = cache_directory / file_name(camera.digest);
   if (std::optional<WarpTable> found = load(path, camera.digest)) {
-    return {std::move(*found), false, ""};
+    return {std::move(*found), false, "", path};
   }
-  CachedTable result{build_warp_table(camera), true, ""};
+  CachedTable result{build_warp_table(camera), true, "", path};
   try {
     result.table.store(path);
     forget_old_tables(cache_directory);

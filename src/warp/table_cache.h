@@ -13,8 +13,9 @@ std::filesystem::path default_cache_directory();
 
 struct CachedTable {
   WarpTable table;
-  bool built = false;   ///< not found, or found unusable
-  std::string trouble;  ///< why it could not be kept; empty: it is kept
+  bool built = false;          ///< not found, or found unusable
+  std::string trouble;         ///< why it could not be kept; empty: it is kept
+  std::filesystem::path path;  ///< where it is kept
 };
 
 /// The camera's table from `cache_directory`; built and kept there when it is missing, damaged or

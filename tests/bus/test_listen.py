@@ -8,7 +8,8 @@ import subprocess
 import time
 
 import lcm
-from processes import eventually, running
+import pytest
+from processes import eventually, free_endpoint, running
 
 
 @contextlib.contextmanager
@@ -70,6 +71,32 @@ def test_listen_ends_when_its_reader_has_gone(programs, types, lcm_url):
         listener.stdout.close()
         lcm.LCM(lcm_url).publish("BOLE_TREES", types.tree_list_t().encode())
         assert listener.wait(5) == 1
+
+
+def test_listen_takes_the_configuration_and_wonders_once_at_silence(programs, lcm_url, tmp_path):
+    config = tmp_path / "boled.toml"
+    config.write_text(f'lcm.url = "{lcm_url}"\n')
+    command = [programs / "bolectl", "listen", "--config", config]
+    with running(command, stderr=subprocess.PIPE, text=True) as listener:
+        time.sleep(4.5)
+        listener.terminate()
+        log = listener.communicate(timeout=5)[1]
+    (line,) = log.splitlines()
+    assert f"nothing on {lcm_url} yet; is boled running" in line
+
+
+def test_listen_says_that_nobody_answers_at_an_endpoint(programs):
+    endpoint = free_endpoint()
+    command = [programs / "bolectl", "listen", "--zenoh", endpoint]
+    with running(command, stderr=subprocess.PIPE, text=True) as listener:
+        time.sleep(4.5)
+        listener.terminate()
+        log = listener.communicate(timeout=5)[1]
+    if "not in this build" in log:
+        pytest.skip("built without Zenoh")
+    (line,) = log.splitlines()
+    assert f"cannot connect to {endpoint} yet; is boled running there" in line
+    assert "Connection refused" in line
 
 
 def test_a_planner_can_do_without_a_camera(programs, lcm_url):

@@ -79,6 +79,26 @@ def test_a_missing_camera_file_is_one_line_and_exit_code_2(boled):
     assert "/nonexistent.toml" in run.stderr and run.stderr.count("\n") == 1
 
 
+def test_the_start_says_what_is_in_force(programs, boled, drive, tmp_path):
+    version = subprocess.run([programs / "boled", "--version"], capture_output=True,
+                             text=True).stdout.split()[1]
+    config = tmp_path / "boled.toml"
+    config.write_text('camera.name = "front"\npublish.to = ["lcm", "zenoh", "jsonl:lists"]\n'
+                      f'lcm.url = "udpm://239.255.76.67:7671?ttl=0"\n'
+                      f'zenoh.listen = ["{free_endpoint()}"]\n')
+    table = tmp_path / "table"
+    subprocess.run([programs / "bolectl", "lut", "build", "--camera", drive / "camera.toml", "--out",
+                    table], check=True)
+    log = boled("--config", config, "--set", f"camera.table={table}").stderr
+    if "not in this build" in log:
+        pytest.skip("built without Zenoh")
+    (line,) = (line for line in log.splitlines() if "bole " in line)
+    for text in [f"bole {version}:", str(config), "camera front", str(table),
+                 "lcm (udpm://239.255.76.67:7671?ttl=0)", "zenoh (listens on tcp/127.0.0.1:",
+                 f"jsonl ({tmp_path}/lists)"]:
+        assert text in line, (text, line)
+
+
 def test_boled_links_no_opencv(programs):
     libraries = subprocess.run(["ldd", programs / "boled"], capture_output=True, text=True).stdout
     assert "libc.so" in libraries and "opencv" not in libraries
@@ -158,6 +178,12 @@ def test_sim_leaves_no_frames_of_two_recordings_in_one_folder(bolectl, tmp_path)
     shorter = bolectl(*common, "1")
     assert shorter.returncode == 2
     assert "frame_000001.jpg" in shorter.stderr and shorter.stderr.count("\n") == 1
+
+
+def test_sim_finds_the_example_camera_from_wherever_it_is_started(programs, tmp_path):
+    subprocess.run([programs / "bolectl", "sim", "--out", "drive", "--frames", "1", "--seed", "1"],
+                   cwd=tmp_path, check=True)
+    assert (tmp_path / "drive/camera.toml").exists()
 
 
 def test_doctor_says_what_is_well_and_what_mends_the_rest(bolectl, drive):

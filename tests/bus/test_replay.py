@@ -25,6 +25,18 @@ def test_lockstep_is_byte_identical_over_ten_runs(boled):
     assert sum(entry["num_trees"] for entry in found) > 0
 
 
+def test_a_file_of_lists_outlives_a_restart_and_is_the_same_after_each_run_in_lockstep(
+    boled, tmp_path
+):
+    kept = tmp_path / "lists.jsonl"
+    for _ in range(2):
+        boled("--pace", "lockstep", "--publish", f"jsonl:{kept}")
+    first = kept.read_text()
+    assert len(lists(first)) == 20
+    boled("--pace", "rate:100", "--publish", f"jsonl:{kept}")
+    assert kept.read_text().startswith(first) and len(kept.read_text()) > len(first)
+
+
 class Receiver:
     """Keeps every list of a URL, read with the generated type alone."""
 

@@ -60,27 +60,40 @@ def test_what_cannot_work_is_one_line_and_exit_code_2(boled, raw_drive, settings
     assert all(text in line for text in named), line
 
 
-def test_a_port_in_use_is_one_line_and_exit_code_2(boled, programs, raw_drive, tmp_path):
-    setting = f'zenoh.listen=["{free_endpoint()}"]'
-    with Daemon(programs, raw_drive, tmp_path / "boled.log", "--publish", "zenoh", "--set",
-                setting) as first:
-        assert eventually(lambda: "streaming" in first.log())
-        time.sleep(0.5)  # it listens in the background
-        run = boled("--publish", "zenoh", "--set", setting, camera=raw_drive / "camera.toml",
-                    source=f"replay:{raw_drive}")
-    assert "zenoh.listen" in (line := refusal(run)) and "the port is in use" in line
+def test_a_port_in_use_is_waited_for_and_the_other_bus_goes_on(
+    programs, raw_drive, tmp_path, types, lcm_url
+):
+    endpoint = free_endpoint()
+    buses = ["--publish", "lcm,zenoh", "--set", f"lcm.url={lcm_url}", "--set",
+             f'zenoh.listen=["{endpoint}"]']
+    with (
+        socket.create_server(("127.0.0.1", int(endpoint.rpartition(":")[2]))) as other,
+        Client("lcm_client.py", lcm_url, "BOLE_.*") as lcm,
+        Daemon(programs, raw_drive, tmp_path / "boled.log", *buses) as boled,
+    ):
+        def zenoh_health():
+            status = lcm.last_status(types)
+            return status and next(bus for bus in status.buses if bus.name == "zenoh")
+
+        assert eventually(lambda: (bus := zenoh_health()) and bus.failed > 0)
+        assert f"{endpoint}: the port is in use" in zenoh_health().last_error
+        assert not zenoh_health().healthy and lcm.lists(types)
+        other.close()
+        assert eventually(lambda: zenoh_health().published > 0)
+        assert zenoh_health().healthy
+        assert boled.stop().count("the port is in use") == 1
 
 
-def test_the_default_port_in_use_is_one_line_with_a_remedy(boled, raw_drive):
+def test_the_default_port_in_use_is_an_error_with_a_remedy(boled, raw_drive):
     with socket.socket() as other:
         with contextlib.suppress(OSError):  # whoever has it already will do
             other.bind(("127.0.0.1", 7447))
             other.listen()
         run = boled("--publish", "zenoh", camera=raw_drive / "camera.toml",
                     source=f"replay:{raw_drive}")
-    line = refusal(run)
-    assert "zenoh.listen" in line and "the port is in use" in line
-    assert 'zenoh.connect=["tcp/127.0.0.1:7447"]' in line
+    assert run.returncode == 0
+    (line,) = (line for line in run.stderr.splitlines() if "the port is in use" in line)
+    assert "zenoh.listen" in line and 'zenoh.connect=["tcp/127.0.0.1:7447"]' in line
 
 
 def test_a_private_key_of_another_is_one_line_and_exit_code_2(boled, raw_drive, certificates):
@@ -116,7 +129,7 @@ def test_an_endpoint_that_nobody_serves_is_told_once_and_the_other_bus_goes_on(
 
 
 def test_mutual_tls_refuses_who_has_no_certificate_and_says_so(
-    programs, raw_drive, tmp_path, types, certificates
+    programs, bolectl, raw_drive, tmp_path, types, certificates
 ):
     endpoint = free_endpoint("tls")
     ca = {"transport/link/tls/root_ca_certificate": str(certificates / "ca.pem")}
@@ -130,6 +143,12 @@ def test_mutual_tls_refuses_who_has_no_certificate_and_says_so(
                 "zenoh.tls.mutual=true") as boled:
         with Client("zenoh_client.py", endpoint, "subscribe", "bole/**", settings=planner) as admitted:
             assert eventually(lambda: admitted.lists(types))
+        config = tmp_path / "planner.toml"
+        config.write_text("[zenoh.tls]\nmutual = true\n" + "".join(
+            f'{key} = "{certificates / file}"\n' for key, file in
+            [("ca", "ca.pem"), ("certificate", "planner.pem"), ("private_key", "planner.key")]))
+        listened = bolectl("listen", "--zenoh", endpoint, "--config", config, "--count", "1")
+        assert listened.returncode == 0 and "bole/robot/" in listened.stdout, listened.stderr
         stranger = Client("zenoh_client.py", endpoint, "subscribe", "bole/**", settings=ca)
         try:
             assert eventually(lambda: "peer sent no certificates" in boled.log()), boled.log()

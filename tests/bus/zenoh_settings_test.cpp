@@ -30,13 +30,19 @@ TEST(ZenohSession, RefusesMalformedEndpoints) {
               HasSubstr("zenoh.listen"));
 }
 
-TEST(ZenohSession, RefusesAPortInUse) {
+TEST(ZenohSession, WaitsForAPortInUseAndSaysSo) {
   int port = 0;
-  const auto taken = bind_to_free_port(port);
+  auto taken = bind_to_free_port(port);
   ASSERT_EQ(listen(taken.get(), 1), 0);
   const auto endpoint = "tcp/127.0.0.1:" + std::to_string(port);
-  EXPECT_THAT(error_of([&] { ZenohSession session(listening(endpoint)); }),
-              AllOf(HasSubstr("zenoh.listen"), HasSubstr("the port is in use")));
+  const ZenohSession session(listening(endpoint));
+  EXPECT_TRUE(eventually([&] { return !session.state().error.empty(); }));
+  EXPECT_FALSE(session.state().open);
+  EXPECT_THAT(session.state().error,
+              AllOf(HasSubstr(endpoint + ": the port is in use"), HasSubstr("zenoh.listen")));
+  taken.reset();
+  EXPECT_TRUE(eventually([&] { return session.state().open; }));
+  EXPECT_EQ(session.state().error, "");
 }
 
 TEST(ZenohSettings, AreCheckedWithoutAPort) {

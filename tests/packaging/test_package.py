@@ -65,9 +65,22 @@ def test_each_package_says_what_is_new_in_its_version(packages, root):
 def test_the_service_runs_what_is_installed(root):
     unit = (root / "usr/lib/systemd/system/boled.service").read_text()
     assert "ExecStart=/usr/bin/boled\n" in unit and "@" not in unit
+    # What boled.toml says of files of the service.
+    settings = (root / "usr/share/bole/boled.toml").read_text()
+    assert "/var/lib/bole/lists.jsonl" in settings and "StateDirectory=bole\n" in unit
+    assert "/var/cache/bole" in settings and "CacheDirectory=bole\n" in unit
+    assert "/run/credentials/boled.service/" in settings and "LoadCredential=" in settings
     assert (root / "usr/lib/udev/rules.d/70-bole-cameras.rules").exists()
     assert (root / "etc/bole/camera").is_dir()
     assert not (root / "usr/local").exists()
+
+
+def test_the_examples_name_where_the_types_are(root):
+    examples = list((root / "usr/share/bole/examples").glob("subscribe_*"))
+    named = {path for example in examples
+             for path in re.findall("/usr/share/bole/[a-z]+", example.read_text())}
+    assert named == {"/usr/share/bole/python", "/usr/share/bole/types"}
+    assert all((root / path.lstrip("/")).is_dir() for path in named)
 
 
 def test_the_scripts_of_the_installation_are_shell(packages, tmp_path):

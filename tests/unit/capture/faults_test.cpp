@@ -2,11 +2,14 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <functional>
+#include <set>
 #include <thread>
 #include <vector>
 
 #include "base/errors.h"
+#include "base/files.h"
 #include "capture/replay/replay_source.h"
 #include "capture/supervisor.h"
 #include "support/temporary_folder.h"
@@ -154,6 +157,28 @@ TEST(Faults, InterruptEndsTheWaitForALateFrame) {
   std::thread other([&] { source->interrupt(); });
   EXPECT_EQ(source->grab(std::chrono::minutes(1)).kind, Grab::Kind::interrupted);
   other.join();
+}
+
+TEST(Faults, TheExampleThatShipsShowsEveryKind) {
+  const std::filesystem::path example = BOLE_SOURCE_DIR "/examples/faults.toml";
+  std::set<Fault::Kind> kinds;
+  for (const Fault& fault : read_faults(example)) kinds.insert(fault.kind);
+  EXPECT_EQ(kinds.size(), 7U);
+
+  const Drive run = run_with(read_text_file(example, 1 << 20));
+  const auto times = [&](std::int64_t seq) { return std::ranges::count(run.seqs, seq); };
+  const auto place = [&](std::int64_t seq) {
+    return static_cast<std::size_t>(std::ranges::find(run.seqs, seq) - run.seqs.begin());
+  };
+  EXPECT_EQ(times(2), 1);
+  EXPECT_EQ(times(3) + times(4), 0) << "dropped";
+  EXPECT_EQ(times(6), 3) << "duplicated";
+  EXPECT_EQ(run.counts.drops[DropCause::damaged], 1);
+  EXPECT_EQ(run.clock_ms.at(place(10)), 1050) << "late";
+  EXPECT_EQ(run.utimes_ms.at(place(12)), 1200 - 3'600'000) << "a stepped clock";
+  EXPECT_EQ(run.counts.stalls, 1);
+  EXPECT_EQ(run.counts.losses, 1);
+  EXPECT_EQ(times(39), 1) << "it comes back";
 }
 
 }  // namespace

@@ -43,6 +43,35 @@ std::vector<std::string> lines_of(const std::filesystem::path& file) {
   return lines;
 }
 
+TEST(JsonlPublisher, GoesOnWithWhatAnEarlierOneWroteUnlessItIsToBeErased) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.write("lists.jsonl", "earlier\ntor");
+  TreeListEncoder encoder;
+  const auto bytes = encoder.encode(sample_list(sample_trees(1)));
+  JsonlPublisher(file).publish(MessageKind::trees, bytes, "");
+  const std::vector<std::string> lines = lines_of(file);
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[1], "tor");
+  JsonlPublisher(file).publish(MessageKind::trees, bytes, "");
+  EXPECT_THAT(lines_of(file), testing::ElementsAre("earlier", "tor", lines[2], lines[2]));
+  using Earlier = JsonlPublisher::Earlier;
+  JsonlPublisher(file, Earlier::erased).publish(MessageKind::trees, bytes, "");
+  EXPECT_THAT(lines_of(file), testing::ElementsAre(lines[2]));
+}
+
+TEST(JsonlPublisher, GoesOnAtTheEndOfAFileThatSomebodyHasCut) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder / "lists.jsonl";
+  TreeListEncoder encoder;
+  const auto bytes = encoder.encode(sample_list(sample_trees(1)));
+  JsonlPublisher publisher(file);
+  publisher.publish(MessageKind::trees, bytes, "");
+  const std::uintmax_t size = std::filesystem::file_size(file);
+  std::filesystem::resize_file(file, 0);
+  publisher.publish(MessageKind::trees, bytes, "");
+  EXPECT_EQ(std::filesystem::file_size(file), size) << "no zeros where the cut part was";
+}
+
 TEST(JsonlPublisher, BeginsANewLineAfterOneThatTheDiskTookInPart) {
   const test::TemporaryFolder folder;
   const std::filesystem::path file = folder / "lists.jsonl";

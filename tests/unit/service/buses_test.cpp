@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/clock.h"
+#include "publish/decoder.h"
 
 namespace bole {
 namespace {
@@ -18,6 +19,7 @@ struct BusScript {
   bool held = false;
   std::string refusal;
   std::vector<std::size_t> sizes;  // of the messages that arrived
+  std::vector<std::byte> last;     // of them
 
   void hold(bool now) {
     const std::lock_guard lock(mutex);
@@ -45,6 +47,7 @@ class ScriptedBus : public Publisher {
                const std::string& /*file*/) override {
     std::unique_lock lock(script_.mutex);
     script_.sizes.push_back(bytes.size());
+    script_.last.assign(bytes.begin(), bytes.end());
     script_.changed.notify_all();
     script_.changed.wait(lock, [&] { return !script_.held; });
     if (!script_.refusal.empty()) throw BusError(script_.refusal);
@@ -121,6 +124,19 @@ TEST(Buses, AStatusDoesNotTakeAListsPlace) {
   script.wait_for_messages(3);
   EXPECT_EQ(script.sizes, (std::vector<std::size_t>{1, 3, 2}));
   EXPECT_EQ(bus->health()[0].overwritten, 0);
+}
+
+TEST(Buses, AStatusTellsTheTimeAndHowTheBusesDo) {
+  BusScript script;
+  const auto bus = buses_of({&script}, WhenFull::wait);
+  const ReplayClock clock(7'000'000);
+  bus->offer(status_t{}, clock);
+  script.wait_for_messages(1);
+  const status_t status = decode_status(script.last);
+  EXPECT_EQ(status.mono_ns, 7'000'000);
+  EXPECT_EQ(status.utime, 7'000);
+  ASSERT_EQ(status.num_buses, 1);
+  EXPECT_EQ(status.buses[0].name, "scripted");
 }
 
 TEST(Buses, ARefusalIsAStateAndACounterAndEndsWithTheNextSuccess) {

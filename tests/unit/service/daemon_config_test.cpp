@@ -4,6 +4,7 @@
 
 #include "base/errors.h"
 #include "base/files.h"
+#include "support/temporary_folder.h"
 
 namespace bole {
 namespace {
@@ -62,6 +63,38 @@ TEST(DaemonConfig, SettingsLieOverTheFile) {
   EXPECT_EQ(config.publish.robot, "elk");
 }
 
+TEST(DaemonConfig, PathsInTheFileAreRelativeToItsFolderAndOfSettingsToWhereWeStand) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.write("boled.toml", R"(
+    camera = { file = "front/camera.toml", table = "../warp.table", cache_directory = "/cache" }
+    source = { uri = "replay:drive", faults = "faults.toml" }
+    publish.to = ["lcm", "jsonl:lists.jsonl", "jsonl:-", "jsonl:/absolute"]
+    zenoh = { config_file = "z.json5", tls = { ca = "ca.pem", certificate = "c", private_key = "k" } }
+    service.trace = "trace.json"
+  )");
+  const DaemonConfig config = load_daemon_config(file, {});
+  EXPECT_EQ(config.camera.file, folder / "front/camera.toml");
+  EXPECT_EQ(config.camera.name, "front");
+  EXPECT_EQ(config.camera.table, folder.path().parent_path() / "warp.table");
+  EXPECT_EQ(config.camera.cache_directory, "/cache");
+  EXPECT_EQ(config.source.uri, "replay:" + (folder / "drive").string());
+  EXPECT_EQ(config.source.faults, folder / "faults.toml");
+  EXPECT_EQ(config.publish.to.at(1).path, folder / "lists.jsonl");
+  EXPECT_EQ(config.publish.to.at(2).path, "-");
+  EXPECT_EQ(config.publish.to.at(3).path, "/absolute");
+  EXPECT_EQ(config.zenoh.config_file, folder / "z.json5");
+  EXPECT_EQ(config.zenoh.tls.ca, folder / "ca.pem");
+  EXPECT_EQ(config.zenoh.tls.certificate, folder / "c");
+  EXPECT_EQ(config.zenoh.tls.private_key, folder / "k");
+  EXPECT_EQ(config.service.trace, folder / "trace.json");
+
+  const DaemonConfig laid_over =
+      load_daemon_config(file, {{"camera.file", "camera.toml"}, {"source.uri", "replay:drive"}});
+  EXPECT_EQ(laid_over.camera.file, "camera.toml");
+  EXPECT_EQ(laid_over.source.uri, "replay:drive");
+  EXPECT_EQ(laid_over.source.faults, folder / "faults.toml");
+}
+
 TEST(DaemonConfig, TheCameraIsNamedAfterItsFolder) {
   EXPECT_EQ(with({"camera.file=/etc/bole/left eye/camera.toml"}).camera.name, "left_eye");
   EXPECT_EQ(with({"camera.file=/etc/bole/rear/./camera.toml"}).camera.name, "rear");
@@ -75,7 +108,7 @@ TEST(DaemonConfig, RefusesWhatIsNotAsItMustBeAndNamesIt) {
   for (const char* pair :
        {"publish.min_score=1.5", "publish.min_score=nan", "publish.min_scor=0.5",
         "detect.mode=best", "publish.to=lcm", "publish.to=[\"udp\"]", "publish.to=[\"jsonl:\"]",
-        "publish.to=[\"lcm\", \"lcm\"]", "zenoh.mode=broker", "camera.name=\"\"",
+        "publish.to=[\"lcm\", \"lcm\"]", "publish.to=[]", "zenoh.mode=broker", "camera.name=\"\"",
         "camera.name=abcdefghijklmnopq", "publish.robot=\"a/b\"", "source.loop=1",
         "source.rate_hz=0", "lcm.url=tcp", "service.realtime_priority=100", "camera.file=["}) {
     const std::string text = pair;

@@ -22,6 +22,7 @@ TEST(FrameTime, AMonotonicStampIsMappedToUtc) {
       frame_time({StampClock::monotonic, 4'000'000'000, 0}, StillClock(5'000'000'000, 70'000'000));
   EXPECT_EQ(time.mono_ns, 4'000'000'000);
   EXPECT_EQ(time.utc_us, 69'000'000);
+  EXPECT_EQ(time.scene_ns, time.mono_ns);
 }
 
 TEST(FrameTime, AStepOfUtcMovesTheNextFrameWithIt) {
@@ -37,6 +38,7 @@ TEST(FrameTime, ARealtimeStampIsMappedToMonotonic) {
       frame_time({StampClock::realtime, 69'500'000'000, 0}, StillClock(5'000'000'000, 70'000'000));
   EXPECT_EQ(time.utc_us, 69'500'000);
   EXPECT_EQ(time.mono_ns, 4'500'000'000);
+  EXPECT_EQ(time.scene_ns, time.mono_ns);
 }
 
 TEST(FrameTime, AReplayedStampIsTakenAsItIs) {
@@ -44,6 +46,7 @@ TEST(FrameTime, AReplayedStampIsTakenAsItIs) {
       frame_time({StampClock::replay, 1'234'567'000, 42}, StillClock(5'000'000'000, 70'000'000));
   EXPECT_EQ(time.utc_us, 1'234'567);
   EXPECT_EQ(time.mono_ns, 42);
+  EXPECT_EQ(time.scene_ns, 1'234'567'000) << "not when the replay let it happen";
 }
 
 }  // namespace

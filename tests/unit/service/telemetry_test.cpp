@@ -32,6 +32,7 @@ TEST(Telemetry, APlannerCanTellNoCameraFromStreaming) {
 
 TEST(Telemetry, APlannerCanTellCannotSeeFromNoTrees) {
   Telemetry telemetry("1.0", "front");
+  telemetry.capture_event({CameraState::streaming, "cam 640x480", false});
   telemetry.vision("dark");
   EXPECT_EQ(telemetry.status(0, false).degraded, 1);
   EXPECT_EQ(telemetry.status(0, false).degraded_reason, "dark");
@@ -39,13 +40,39 @@ TEST(Telemetry, APlannerCanTellCannotSeeFromNoTrees) {
   EXPECT_EQ(telemetry.status(0, false).degraded, 0);
 }
 
+TEST(Telemetry, WhatFramesShowedGoesWithTheCamera) {
+  Telemetry telemetry("1.0", "front");
+  const auto forgotten = [&] {
+    const status_t status = telemetry.status(0, false);
+    return status.degraded == 0 && status.degraded_reason.empty() && status.latency_p50_ms == 0 &&
+           status.latency_p99_ms == 0 && status.latency_max_ms == 0;
+  };
+  const auto see_badly = [&] {
+    telemetry.vision("dark");
+    telemetry.processed(5'000'000, 0);
+  };
+  telemetry.capture_event({CameraState::streaming, "cam 640x480", false});
+  see_badly();
+  EXPECT_FALSE(forgotten());
+  telemetry.capture_event({CameraState::no_camera, "unplugged", false});
+  EXPECT_TRUE(forgotten());
+  see_badly();  // the last frame was still worked on
+  EXPECT_TRUE(forgotten());
+  telemetry.capture_event({CameraState::streaming, "cam 640x480", false});
+  EXPECT_TRUE(forgotten()) << "until a frame comes";
+  see_badly();
+  EXPECT_FALSE(forgotten());
+}
+
 TEST(Telemetry, APlannerCanTellFramesThatAreOfNoUseFromStreaming) {
   Telemetry telemetry("1.0", "front");
   telemetry.capture_event({CameraState::streaming, "cam 640x480", false});
   for (int k = 0; k < 4; ++k) telemetry.unusable("", "is cut short");
   EXPECT_EQ(telemetry.status(0, false).state, status_t::STATE_STREAMING) << "now and then one";
+  telemetry.vision("dark");
   telemetry.unusable("", "is cut short");
   EXPECT_EQ(telemetry.status(0, false).state, status_t::STATE_STALLED);
+  EXPECT_EQ(telemetry.status(0, false).degraded, 0) << "nothing has been seen of late";
   EXPECT_EQ(telemetry.status(0, false).state_reason, "no usable frame: frame: is cut short");
   EXPECT_EQ(telemetry.status(0, true).state, status_t::STATE_STOPPING);
   telemetry.processed(1'000'000, 0);
@@ -109,6 +136,7 @@ TEST(Telemetry, RatesAreOverTheTimeSinceTheLastStatus) {
 
 TEST(Telemetry, LatencyIsThatOfTheLastLists) {
   Telemetry telemetry("1.0", "front");
+  telemetry.capture_event({CameraState::streaming, "cam 640x480", false});
   for (int k = 0; k < 1000; ++k) telemetry.processed(90'000'000, 0);
   for (int k = 0; k < 512; ++k) telemetry.processed(k * 10'000, 0);
   const status_t status = telemetry.status(0, false);

@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use zenoh::Config;
 use zenoh::config::EndPoint;
 
+use crate::Error;
 use crate::ffi::{Problem, Settings, Switch};
 use crate::log::without_places;
 
@@ -178,18 +179,16 @@ fn check_endpoints(key: &str, endpoints: &[String]) -> Checked<()> {
     Ok(())
 }
 
-/// Refuses endpoints to listen on, given or by default, whose port another program has.
-pub fn check_ports(config: &Config) -> Checked<()> {
+/// An error while another program has the port of an endpoint to listen on, given or by default:
+/// zenoh's own says neither which nor what to do.
+pub fn check_ports(config: &Config) -> Result<(), Error> {
     for text in listen_endpoints(config) {
         let Ok(endpoint) = text.parse::<EndPoint>() else { continue };
         // Other failures may pass, as an address that the interface has not got yet.
         let bound = TcpListener::bind(endpoint.address().as_str());
         if bound.is_err_and(|e| e.kind() == ErrorKind::AddrInUse) {
-            let what = format!("{text:?}: the port is in use");
-            let remedy = format!(
-                "listen on another port, or connect to who has it: zenoh.connect=[{text:?}]"
-            );
-            return Err(problem("zenoh.listen", what, remedy));
+            let remedy = "set another zenoh.listen, or connect to who has it: zenoh.connect";
+            return Err(format!("{text}: the port is in use; {remedy}=[{text:?}]").into());
         }
     }
     Ok(())

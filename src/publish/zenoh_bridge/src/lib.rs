@@ -111,7 +111,7 @@ fn told<T>(result: Result<T, ffi::Problem>, problem: &mut ffi::Problem) -> Resul
     })
 }
 
-/// Looks the settings over as `open` does, but for ports in use, and opens nothing.
+/// Looks the settings over as `open` does, and opens nothing.
 fn check(settings: &ffi::Settings, problem: &mut ffi::Problem) -> Result<(), Error> {
     guarded(|| told(config::build(settings).map(|_| ()), problem))
 }

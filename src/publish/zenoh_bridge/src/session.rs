@@ -124,7 +124,6 @@ pub struct Session {
 impl Session {
     pub fn open(settings: &Settings) -> Result<Session, Problem> {
         let (config, overridden) = config::build(settings)?;
-        config::check_ports(&config)?;
         let shared = Arc::new(Shared {
             topics: settings.topics.iter().map(topic).collect::<Result<_, _>>()?,
             alive_key: match settings.alive_key.as_str() {
@@ -250,6 +249,7 @@ impl Shared {
     }
 
     fn try_open(&self, config: Config) -> Result<Open, Error> {
+        config::check_ports(&config)?;
         let session = zenoh::open(config).wait()?;
 
         let links = Arc::clone(&self.links);
