@@ -93,6 +93,30 @@ TEST(CameraConfig, APhotographNeedsNoCalibration) {
   EXPECT_EQ(config.horizon_row, 350);
 }
 
+TEST(CameraConfig, OpenCvsOmnidirectionalModelsAreMountedAsOcamIs) {
+  for (const std::string name : {"fisheye", "omnidir"}) {
+    const CameraConfig config = parse(with(kOmni, "ocam", name));
+    EXPECT_EQ(name_of(config.model), name);
+    EXPECT_EQ(config.mount.left, ImageSide::right);
+    EXPECT_EQ(config.size.width, 0);
+    const std::string sized =
+        with(kOmni, "\"ocam\"", "\"" + name + "\"\nwidth = 640\nheight = 480");
+    EXPECT_EQ(parse(sized).size, (ImageSize{640, 480}));
+    EXPECT_THAT(problem_of(with(sized, "height = 480\n", "")), HasSubstr("camera.height"));
+    EXPECT_THAT(problem_of(with(sized, "pitch_deg = -0.8", "horizon_row = 3")),
+                HasSubstr("mount.horizon_row: is not a known key"));
+    EXPECT_THAT(problem_of(with(sized, "calibration = \"calib_results.txt\"\n", "")),
+                HasSubstr("camera.calibration: is missing; name OpenCV's YAML"));
+  }
+}
+
+TEST(CameraConfig, EveryModelIsNamedAsItIsWritten) {
+  EXPECT_EQ(name_of(parse(kOmni).model), "ocam");
+  EXPECT_EQ(name_of(parse(kPhoto).model), "pinhole");
+  EXPECT_TRUE(looks_all_round(parse(kOmni).model));
+  EXPECT_FALSE(looks_all_round(parse(kPhoto).model));
+}
+
 TEST(CameraConfig, UnknownKeysAreNamedWhereverTheyStand) {
   EXPECT_THAT(omni_problem("mask =", "mesk ="), HasSubstr("camera.mesk: is not a known key"));
   EXPECT_THAT(omni_problem("roll_deg", "roll"), HasSubstr("mount.roll"));

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.h"
+#include "base/files.h"
 #include "unit/warp/test_cameras.h"
+#include "warp/warp_table.h"
 
 namespace bole {
 namespace {
@@ -58,6 +60,58 @@ TEST(LoadCamera, TheDigestTellsCamerasWithoutAMaskApart) {
   const std::uint32_t before = load_camera(file).digest;
   std::ofstream(file, std::ios::app) << "# a note\n";
   EXPECT_NE(load_camera(file).digest, before);
+}
+
+// The small camera with a parabolic mirror, which both models describe exactly: f(rho) =
+// -50 + rho^2 / 200.
+TEST(LoadCamera, TheSameCameraAsOcamAndAsOmnidirFillsTheSamePanorama) {
+  const test::TemporaryFolder folder;
+  const auto file = write_small_camera(folder);
+  folder.write("calib.txt", "3 -50 0 5e-3\n2 75.5 62.5\n120.8 159.1\n1 0 0\n240 320\n");
+  folder.write("calib.yml",
+               "%YAML:1.0\n---\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n"
+               "   data: [ 100., 0., 159.1, 0., 100., 120.8, 0., 0., 1. ]\n"
+               "distortion_coefficients: !!opencv-matrix\n   rows: 1\n   cols: 4\n   dt: d\n"
+               "   data: [ 0., 0., 0., 0. ]\nxi: 1.\n");
+  const std::string toml = read_text_file(file, 1 << 16);
+  const std::string ocam = "model = \"ocam\"\ncalibration = \"calib.txt\"";
+  for (const char* const sides :
+       {"left = \"image right\"", "left = \"image left\"",
+        "left = \"image up\"\nforward = \"image right\"\ncentre = \"up\""}) {
+    std::string text = toml;
+    text.replace(text.find("left ="), sizeof("left = \"image right\"") - 1, sides);
+    const Camera first = load_camera(folder.write("camera.toml", text));
+    text.replace(text.find(ocam), ocam.size(),
+                 "model = \"omnidir\"\ncalibration = \"calib.yml\"\nwidth = 320\nheight = 240");
+    const Camera second = load_camera(folder.write("camera.toml", text));
+    EXPECT_NE(first.digest, second.digest);
+    const WarpTable a = build_warp_table(first), b = build_warp_table(second);
+    EXPECT_EQ(a.panorama(), b.panorama());
+    ASSERT_EQ(a.entries().size(), b.entries().size());
+    // The last bit of a rounded place may differ.
+    std::size_t seen = 0, apart = 0;
+    for (std::size_t i = 0; i < a.seen().pixels.size(); ++i) {
+      seen += a.seen().pixels[i] != 0 ? 1 : 0;
+      apart += a.seen().pixels[i] != b.seen().pixels[i] ? 1 : 0;
+    }
+    for (std::size_t i = 0; i < a.entries().size(); ++i) {
+      apart += a.entries()[i] != b.entries()[i] ? 1 : 0;
+    }
+    EXPECT_GT(seen, 10000u);
+    EXPECT_LT(apart, 20u);
+  }
+}
+
+TEST(LoadCamera, RefusesAHorizonThatNoRayLeadsTo) {
+  const test::TemporaryFolder folder;
+  folder.write("calib.yml",
+               "camera_matrix: {data: [100, 0, 80, 0, 100, 60, 0, 0, 1]}\n"
+               "distortion_coefficients: {data: [-0.3, 0, 0, 0]}\n");
+  const auto file = folder.write("camera.toml",
+                                 "[camera]\nmodel = \"pinhole\"\ncalibration = \"calib.yml\"\n"
+                                 "width = 160\nheight = 120\n[mount]\nheight_m = 1\n"
+                                 "horizon_row = 900\n[panorama]\nrange_min_m = 2\n");
+  EXPECT_THAT(problem_of(file), HasSubstr("camera.toml: mount.horizon_row"));
 }
 
 TEST(LoadCamera, NamesTheFileThatIsMissing) {
