@@ -28,8 +28,8 @@ constexpr std::array<NamedModel, 4> kModels = {{{"ocam", CameraConfig::Model::oc
                                                 {"pinhole", CameraConfig::Model::pinhole}}};
 
 CameraConfig::Model model(TomlTable& table) {
-  std::vector<std::string> names;
-  for (const NamedModel& named : kModels) names.emplace_back(named.name);
+  std::vector<std::string> names(kModels.size());
+  std::ranges::transform(kModels, names.begin(), [](const auto& m) { return std::string(m.name); });
   return std::ranges::find(kModels, table.choice("model", kModels.front().name, names),
                            &NamedModel::name)
       ->model;

@@ -2,6 +2,7 @@
 read back, and the trees in them found, whichever way it is mounted."""
 
 import json
+import pathlib
 
 import pytest
 
@@ -92,3 +93,9 @@ def test_a_damaged_calibration_is_one_line_and_exit_code_2(bolectl, camera):
         run = bolectl("detect", "--camera", file, "frame.png")
         assert run.returncode == 2 and run.stdout == ""
         assert "calibration.yml" in run.stderr and run.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("example", ["example", "fisheye", "pinhole"])
+def test_calib_check_has_nothing_against_the_examples(bolectl, example):
+    camera = pathlib.Path(__file__).parents[2] / "calib" / example / "camera.toml"
+    assert json.loads(bolectl("calib", "check", "--json", "--camera", camera).stdout)["warnings"] == []

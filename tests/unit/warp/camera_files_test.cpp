@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "base/errors.h"
 #include "base/files.h"
+#include "geometry/angles.h"
 #include "unit/warp/test_cameras.h"
 #include "warp/warp_table.h"
 
@@ -29,6 +32,17 @@ TEST(LoadCamera, ReadsTheExample) {
   EXPECT_EQ(camera.model->image_size(), (ImageSize{1280, 960}));
   EXPECT_EQ(camera.mask.size(), 1280u * 960u);
   EXPECT_FALSE(camera.calibration_text.empty());
+}
+
+TEST(LoadCamera, ReadsEveryExample) {
+  std::map<std::string, Camera> cameras;
+  for (const auto& folder : std::filesystem::directory_iterator(BOLE_SOURCE_DIR "/calib")) {
+    cameras[folder.path().filename()] = load_camera(folder.path() / "camera.toml");
+  }
+  ASSERT_EQ(cameras.size(), 3u);
+  EXPECT_EQ(cameras.at("fisheye").config.model, CameraConfig::Model::fisheye);
+  // As the pinhole's file says of its horizon_row.
+  EXPECT_NEAR(cameras.at("pinhole").config.mount.pitch, radians(4.1), radians(0.05));
 }
 
 TEST(LoadCamera, PathsAreRelativeToTheFilesOwnFolder) {
