@@ -141,7 +141,7 @@ void check_resolution(const Camera& camera, CameraCheck& check) {
 
 CameraCheck check_camera(const Camera& camera, const WarpTable& table) {
   CameraCheck check;
-  check.model = camera.config.model == CameraConfig::Model::ocam ? "ocam" : "pinhole";
+  check.model = name_of(camera.config.model);
   check.image = camera.model->image_size();
   check.masked = camera.mask.empty() ? 0 : share_of(camera.mask, false);
   check.panorama = table.panorama();

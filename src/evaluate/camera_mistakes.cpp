@@ -104,9 +104,7 @@ void warn_of_optics(const CameraCheck& check, Warnings& warnings) {
 std::vector<std::string> likely_mistakes(const Camera& camera, const CameraCheck& check) {
   Warnings warnings;
   warn_of_optics(check, warnings);
-  if (camera.config.model == CameraConfig::Model::ocam) {
-    warn_of_sides(camera.config.mount, warnings);
-  }
+  if (looks_all_round(camera.config.model)) warn_of_sides(camera.config.mount, warnings);
   warn_of_ground(camera.config, check, warnings);
   warn_of_resolution(camera.config, check, warnings);
   return warnings;

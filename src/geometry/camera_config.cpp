@@ -1,5 +1,8 @@
 #include "geometry/camera_config.h"
 
+#include <algorithm>
+#include <array>
+
 #include "geometry/angles.h"
 
 namespace bole {
@@ -15,17 +18,42 @@ ImageSide side(TomlTable& table, std::string_view key, std::string_view fallback
 
 bool along_rows(ImageSide side) { return side == ImageSide::up || side == ImageSide::down; }
 
+struct NamedModel {
+  std::string_view name;
+  CameraConfig::Model model;
+};
+constexpr std::array<NamedModel, 4> kModels = {{{"ocam", CameraConfig::Model::ocam},
+                                                {"fisheye", CameraConfig::Model::fisheye},
+                                                {"omnidir", CameraConfig::Model::omnidir},
+                                                {"pinhole", CameraConfig::Model::pinhole}}};
+
+CameraConfig::Model model(TomlTable& table) {
+  std::vector<std::string> names(kModels.size());
+  std::ranges::transform(kModels, names.begin(), [](const auto& m) { return std::string(m.name); });
+  return std::ranges::find(kModels, table.choice("model", kModels.front().name, names),
+                           &NamedModel::name)
+      ->model;
+}
+
+ImageSize size(TomlTable& table) {
+  return {table.required_integer("width", {1, 20000}),
+          table.required_integer("height", {1, 20000})};
+}
+
 void read_camera(TomlTable table, CameraConfig& config) {
-  const std::string model = table.choice("model", "ocam", {"ocam", "pinhole"});
-  config.model = model == "ocam" ? CameraConfig::Model::ocam : CameraConfig::Model::pinhole;
+  config.model = model(table);
   config.calibration = table.text("calibration", "");
   config.mask = table.text("mask", "");
   if (config.model == CameraConfig::Model::pinhole && config.calibration.empty()) {
     config.horizontal_fov = radians(table.required_number("horizontal_fov_deg", {1, 170}));
-    config.size.width = table.required_integer("width", {1, 20000});
-    config.size.height = table.required_integer("height", {1, 20000});
+    config.size = size(table);
   } else if (config.calibration.empty()) {
-    table.fail("calibration", "is missing", "name OCamCalib's calib_results.txt");
+    table.fail("calibration", "is missing",
+               config.model == CameraConfig::Model::ocam ? "name OCamCalib's calib_results.txt"
+                                                         : "name OpenCV's YAML");
+  } else if (config.model != CameraConfig::Model::ocam &&
+             (table.has("width") || table.has("height"))) {
+    config.size = size(table);
   }
   table.done();
 }
@@ -33,7 +61,7 @@ void read_camera(TomlTable table, CameraConfig& config) {
 void read_mount(TomlTable table, CameraConfig& config) {
   Mount& mount = config.mount;
   mount.height = table.required_number("height_m", {0.05, 100});
-  if (config.model == CameraConfig::Model::ocam) {
+  if (looks_all_round(config.model)) {
     mount.forward = side(table, "forward", "image up");
     mount.left = side(table, "left", "image left");
     if (along_rows(mount.forward) == along_rows(mount.left)) {
@@ -84,6 +112,12 @@ void require_sensible_size(const TomlTable& root, const PanoramaGeometry& panora
 }
 
 }  // namespace
+
+std::string_view name_of(CameraConfig::Model model) {
+  return std::ranges::find(kModels, model, &NamedModel::model)->name;
+}
+
+bool looks_all_round(CameraConfig::Model model) { return model != CameraConfig::Model::pinhole; }
 
 CameraConfig parse_camera_config(std::string_view text, const std::string& file) {
   TomlTable root(parse_toml(text, file), file);

@@ -19,12 +19,12 @@ struct Search {
 
 /// camera.toml: a camera, its mount, the panorama made of it, and the trees looked for in it.
 struct CameraConfig {
-  enum class Model { ocam, pinhole };
+  enum class Model { ocam, fisheye, omnidir, pinhole };
   Model model = Model::ocam;
   std::string calibration;            ///< file name, relative to camera.toml's folder; empty: none
   std::string mask;                   ///< file name, likewise
   double horizontal_fov = 0;          ///< radians; a pinhole without a calibration
-  ImageSize size;                     ///< the same
+  ImageSize size;                     ///< the same, or of a calibration that does not say it
   std::optional<double> horizon_row;  ///< of a pinhole, in place of the mount's pitch
   Mount mount;  ///< its pitch, where horizon_row stands for it, is load_camera's to find
   int columns = 1440;
@@ -32,6 +32,12 @@ struct CameraConfig {
   double range_min = 0.9;    ///< metres: the panorama's lower border
   Search search;
 };
+
+/// As camera.toml writes it.
+std::string_view name_of(CameraConfig::Model model);
+
+/// Mounted by the sides of its image, where a pinhole looks ahead.
+bool looks_all_round(CameraConfig::Model model);
 
 /// Parses camera.toml's text. Every key is checked (known, of its type, in range, and fitting the
 /// others); throws ConfigError naming `file` and the key.

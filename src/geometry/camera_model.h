@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <optional>
 
 #include "base/image.h"
@@ -13,6 +15,12 @@ struct Pixel {
   double column = 0;
 };
 
+/// The ray of a pixel to which none leads: not a number.
+inline constexpr Vec3 kNoRay{std::numeric_limits<double>::quiet_NaN(),
+                             std::numeric_limits<double>::quiet_NaN(),
+                             std::numeric_limits<double>::quiet_NaN()};
+inline bool is_ray(const Vec3& ray) { return !std::isnan(ray.x); }
+
 /// What a camera's optics do: which ray of the camera's own frame falls on which pixel. Each model
 /// says how its frame lies in the image.
 class CameraModel {
@@ -23,10 +31,10 @@ class CameraModel {
   virtual ImageSize image_size() const = 0;
 
   /// Where the ray (any length but zero) meets the image plane; the place may lie outside of the
-  /// image. nullopt when the model does not map that direction at all.
+  /// image. nullopt when the model does not map that direction at all, and for kNoRay.
   virtual std::optional<Pixel> pixel_from_ray(const Vec3& ray) const = 0;
 
-  /// The unit ray that falls on `pixel`.
+  /// The unit ray that falls on `pixel`; kNoRay where the model knows of none.
   virtual Vec3 ray_from_pixel(Pixel pixel) const = 0;
 };
 

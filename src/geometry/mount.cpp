@@ -32,6 +32,11 @@ Mat3 robot_from_omni_camera(const Mount& mount) {
   return small_rotation(mount) * Mat3{{ocam_axis(mount.forward), ocam_axis(mount.left), up}};
 }
 
+Mat3 robot_from_omni_opencv_camera(const Mount& mount) {
+  constexpr Mat3 kOcamFromOpencv{{Vec3{0, 1, 0}, Vec3{1, 0, 0}, Vec3{0, 0, -1}}};
+  return robot_from_omni_camera(mount) * kOcamFromOpencv;
+}
+
 Mat3 robot_from_forward_camera(const Mount& mount) {
   return small_rotation(mount) * Mat3{{Vec3{0, 0, 1}, Vec3{-1, 0, 0}, Vec3{0, -1, 0}}};
 }

@@ -21,6 +21,10 @@ struct Mount {
 /// sides. Its determinant is -1 where the camera's handedness differs, as under a mirror.
 Mat3 robot_from_omni_camera(const Mount& mount);
 
+/// The same for an omnidirectional camera in OpenCV's axes: x right in the image, y down, z along
+/// the optical axis, which is what the middle of the image sees.
+Mat3 robot_from_omni_opencv_camera(const Mount& mount);
+
 /// The same for a camera that looks ahead, in OpenCV's axes (x right, y down, z forward); the
 /// mount's sides are not used.
 Mat3 robot_from_forward_camera(const Mount& mount);

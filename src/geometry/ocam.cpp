@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "base/errors.h"
+#include "geometry/monotone.h"
 
 namespace bole {
 namespace {
@@ -74,17 +75,11 @@ std::optional<Pixel> OcamModel::pixel_from_ray(const Vec3& ray) const {
   const double across = std::hypot(ray.x, ray.y);
   if (across == 0) return ray.z < 0 ? std::optional(place(0, 0)) : std::nullopt;
   const double slope = ray.z / across;
-  double low = 0, high = largest_radius_;
-  if (!(f(high) - slope * high >= 0)) return std::nullopt;  // also for a ray that is not a number
-  double rho = high / 2;
-  for (int step = 0; step < 100; ++step) {
-    const double error = f(rho) - slope * rho;
-    (error < 0 ? low : high) = rho;
-    const double newton = rho - error / (slope_of_f(rho) - slope);
-    const double next = newton > low && newton < high ? newton : (low + high) / 2;
-    if (std::abs(next - rho) <= 1e-13 * (1 + rho)) break;
-    rho = next;
-  }
+  const auto error = [&](double rho) { return f(rho) - slope * rho; };
+  // Also for a ray that is not a number.
+  if (!(error(largest_radius_) >= 0)) return std::nullopt;
+  const double rho = root_between(
+      error, [&](double r) { return slope_of_f(r) - slope; }, 0, largest_radius_);
   return place(rho * ray.x / across, rho * ray.y / across);
 }
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <array>
 #include <string>
 #include <string_view>
 
-#include "geometry/camera_model.h"
+#include "geometry/brown.h"
+#include "geometry/camera_matrix.h"
 
 namespace bole {
 
@@ -14,9 +14,8 @@ namespace bole {
 class PinholeModel final : public CameraModel {
  public:
   struct Parameters {
-    double focal_x = 0, focal_y = 0;           ///< pixels
-    double centre_column = 0, centre_row = 0;  ///< principal point
-    std::array<double, 5> distortion{};        ///< k1, k2, p1, p2, k3
+    CameraMatrix matrix;
+    BrownDistortion::Coefficients distortion{};
     ImageSize size;
   };
 
@@ -34,15 +33,15 @@ class PinholeModel final : public CameraModel {
 
  private:
   Parameters p_;
-  double largest_slope_ = 0;  // of a ray against the optical axis
+  BrownDistortion lens_;
 };
 
 /// A camera without distortion whose image spans `horizontal_fov` radians, for photographs without
 /// a calibration: the principal point is the image's middle, pixels are square.
 PinholeModel pinhole_from_field_of_view(double horizontal_fov, ImageSize size);
 
-/// Reads OpenCV's calibration YAML (image_width, image_height, camera_matrix,
-/// distortion_coefficients). Throws ConfigError naming `file`.
-PinholeModel parse_pinhole(std::string_view text, const std::string& file);
+/// Reads OpenCV's calibration YAML (opencv_calibration.h) with up to five distortion coefficients.
+/// `size`: of the image, for a file that does not say it. Throws ConfigError naming `file`.
+PinholeModel parse_pinhole(std::string_view text, const std::string& file, ImageSize size = {});
 
 }  // namespace bole

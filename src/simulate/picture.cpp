@@ -233,6 +233,7 @@ PixelRays::PixelRays(const Camera& camera) : size_(camera.model->image_size()) {
       if (!camera.mask.empty() && camera.mask[i] == 0) continue;
       const Pixel pixel{static_cast<double>(row), static_cast<double>(column)};
       const Vec3 ray = camera.model->ray_from_pixel(pixel);
+      if (!is_ray(ray)) continue;
       if (camera.mask.empty()) {
         const auto back = camera.model->pixel_from_ray(ray);
         if (!back || std::hypot(back->row - pixel.row, back->column - pixel.column) > 0.5) continue;

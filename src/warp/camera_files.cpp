@@ -3,7 +3,9 @@
 #include "base/checksum.h"
 #include "base/errors.h"
 #include "base/files.h"
+#include "geometry/fisheye.h"
 #include "geometry/ocam.h"
+#include "geometry/omnidir.h"
 #include "geometry/pinhole.h"
 #include "warp/mask.h"
 
@@ -12,25 +14,32 @@ namespace {
 
 constexpr std::size_t kLargestText = 1u << 20;
 
-PinholeModel pinhole_of(const CameraConfig& config, const std::string& calibration_text,
-                        const std::string& calibration_file) {
-  return config.calibration.empty() ? pinhole_from_field_of_view(config.horizontal_fov, config.size)
-                                    : parse_pinhole(calibration_text, calibration_file);
+std::unique_ptr<const CameraModel> model_of(const Camera& camera, const std::string& file) {
+  const CameraConfig& config = camera.config;
+  const std::string& text = camera.calibration_text;
+  switch (config.model) {
+    case CameraConfig::Model::ocam:
+      return std::make_unique<OcamModel>(parse_ocam(text, file));
+    case CameraConfig::Model::fisheye:
+      return std::make_unique<FisheyeModel>(parse_fisheye(text, file, config.size));
+    case CameraConfig::Model::omnidir:
+      return std::make_unique<OmnidirModel>(parse_omnidir(text, file, config.size));
+    case CameraConfig::Model::pinhole:
+      break;
+  }
+  return std::make_unique<PinholeModel>(
+      config.calibration.empty() ? pinhole_from_field_of_view(config.horizontal_fov, config.size)
+                                 : parse_pinhole(text, file, config.size));
 }
 
-std::unique_ptr<const CameraModel> model_of(CameraConfig& config,
-                                            const std::string& calibration_text,
-                                            const std::string& calibration_file) {
-  if (config.model == CameraConfig::Model::ocam) {
-    return std::make_unique<OcamModel>(parse_ocam(calibration_text, calibration_file));
+double pitch_of_horizon(const Camera& camera, double row) {
+  const auto& pinhole = dynamic_cast<const PinholeModel&>(*camera.model);
+  const Vec3 ray = pinhole.ray_from_pixel({row, pinhole.parameters().matrix.centre_column});
+  if (!is_ray(ray)) {
+    throw ConfigError(camera.file, "mount.horizon_row",
+                      "lies where the calibration knows of no ray", "give pitch_deg instead");
   }
-  auto model =
-      std::make_unique<PinholeModel>(pinhole_of(config, calibration_text, calibration_file));
-  if (config.horizon_row) {
-    const Pixel horizon{*config.horizon_row, model->parameters().centre_column};
-    config.mount.pitch = pitch_of_forward_camera(model->ray_from_pixel(horizon), config.mount.roll);
-  }
-  return model;
+  return pitch_of_forward_camera(ray, camera.config.mount.roll);
 }
 
 // Lengths are part of it, so that no byte can move from one file to the next unseen.
@@ -59,7 +68,10 @@ Camera load_camera(const std::filesystem::path& camera_toml) {
   if (!camera.config.calibration.empty()) {
     camera.calibration_text = read_text_file(calibration, kLargestText);
   }
-  camera.model = model_of(camera.config, camera.calibration_text, calibration);
+  camera.model = model_of(camera, calibration);
+  if (camera.config.horizon_row) {
+    camera.config.mount.pitch = pitch_of_horizon(camera, *camera.config.horizon_row);
+  }
   remount(camera, camera.config.mount);
   if (!camera.config.mask.empty()) {
     camera.mask = read_mask(folder / camera.config.mask, camera.model->image_size());
@@ -70,9 +82,18 @@ Camera load_camera(const std::filesystem::path& camera_toml) {
 
 void remount(Camera& camera, const Mount& mount) {
   camera.config.mount = mount;
-  camera.robot_from_camera = camera.config.model == CameraConfig::Model::ocam
-                                 ? robot_from_omni_camera(mount)
-                                 : robot_from_forward_camera(mount);
+  switch (camera.config.model) {
+    case CameraConfig::Model::ocam:
+      camera.robot_from_camera = robot_from_omni_camera(mount);
+      break;
+    case CameraConfig::Model::fisheye:
+    case CameraConfig::Model::omnidir:
+      camera.robot_from_camera = robot_from_omni_opencv_camera(mount);
+      break;
+    case CameraConfig::Model::pinhole:
+      camera.robot_from_camera = robot_from_forward_camera(mount);
+      break;
+  }
 }
 
 }  // namespace bole

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.h"
+#include "base/files.h"
 #include "geometry/angles.h"
 
 namespace bole {
@@ -91,6 +92,69 @@ TEST(CameraConfig, APhotographNeedsNoCalibration) {
   EXPECT_DOUBLE_EQ(config.horizontal_fov, radians(60));
   EXPECT_EQ(config.size, (ImageSize{640, 480}));
   EXPECT_EQ(config.horizon_row, 350);
+}
+
+TEST(CameraConfig, OpenCvsOmnidirectionalModelsAreMountedAsOcamIs) {
+  for (const std::string name : {"fisheye", "omnidir"}) {
+    const CameraConfig config = parse(with(kOmni, "ocam", name));
+    EXPECT_EQ(name_of(config.model), name);
+    EXPECT_EQ(config.mount.left, ImageSide::right);
+    EXPECT_EQ(config.size.width, 0);
+    const std::string sized =
+        with(kOmni, "\"ocam\"", "\"" + name + "\"\nwidth = 640\nheight = 480");
+    EXPECT_EQ(parse(sized).size, (ImageSize{640, 480}));
+    EXPECT_THAT(problem_of(with(sized, "height = 480\n", "")), HasSubstr("camera.height"));
+    EXPECT_THAT(problem_of(with(sized, "pitch_deg = -0.8", "horizon_row = 3")),
+                HasSubstr("mount.horizon_row: is not a known key"));
+    EXPECT_THAT(problem_of(with(sized, "calibration = \"calib_results.txt\"\n", "")),
+                HasSubstr("camera.calibration: is missing; name OpenCV's YAML"));
+  }
+}
+
+std::string example(const std::string& name) {
+  return read_text_file(BOLE_SOURCE_DIR "/calib/" + name + "/camera.toml", 1 << 16);
+}
+
+std::string without_comment(const std::string& text, const std::string& line) {
+  return with(text, "# " + line, line);
+}
+
+TEST(CameraConfig, TheExampleSaysTheDefaults) {
+  const CameraConfig said = parse(example("example"));
+  const CameraConfig config =
+      parse("[camera]\ncalibration = \"calib_results.txt\"\n[mount]\nheight_m = 1.05\n");
+  EXPECT_EQ(config.model, said.model);
+  EXPECT_EQ(config.mount.forward, ImageSide::up);
+  EXPECT_EQ(config.mount.left, ImageSide::left);
+  EXPECT_TRUE(config.mount.centre_looks_down);
+  EXPECT_EQ(config.mount.roll, 0);
+  EXPECT_EQ(config.mount.pitch, 0);
+  EXPECT_EQ(config.mount.yaw, 0);
+  EXPECT_EQ(panorama_of(config), panorama_of(said));
+  EXPECT_EQ(config.search.range.low, said.search.range.low);
+  EXPECT_EQ(config.search.range.high, said.search.range.high);
+  EXPECT_EQ(config.search.diameter.low, said.search.diameter.low);
+  EXPECT_EQ(config.search.diameter.high, said.search.diameter.high);
+}
+
+TEST(CameraConfig, WhatTheExamplesShowInCommentsIsKnown) {
+  const std::string fisheye = example("fisheye"), pinhole = example("pinhole");
+  EXPECT_EQ(parse(with(fisheye, "\"fisheye\" ", "\"omnidir\" ")).model,
+            CameraConfig::Model::omnidir);
+  EXPECT_EQ(parse(without_comment(without_comment(fisheye, "width"), "height")).size,
+            (ImageSize{960, 960}));
+  EXPECT_FALSE(parse(without_comment(with(pinhole, "horizon_row = 200", ""), "pitch_deg"))
+                   .horizon_row.has_value());
+  EXPECT_EQ(parse(without_comment(with(pinhole, "horizontal_fov_deg = 60", ""), "calibration"))
+                .calibration,
+            "camera.yml");
+}
+
+TEST(CameraConfig, EveryModelIsNamedAsItIsWritten) {
+  EXPECT_EQ(name_of(parse(kOmni).model), "ocam");
+  EXPECT_EQ(name_of(parse(kPhoto).model), "pinhole");
+  EXPECT_TRUE(looks_all_round(parse(kOmni).model));
+  EXPECT_FALSE(looks_all_round(parse(kPhoto).model));
 }
 
 TEST(CameraConfig, UnknownKeysAreNamedWhereverTheyStand) {

@@ -62,6 +62,33 @@ TEST(Mount, RollComesFirstThenPitchThenYaw) {
   expect_near(robot_from_omni_camera(mount) * v, expected);
 }
 
+// OpenCV's rays: x to the image's right, y down it, z along the axis.
+TEST(Mount, NamesOpenCvsAxesByTheImagesSidesToo) {
+  const Vec3 image_up{0, -1, 0}, image_left{-1, 0, 0}, axis{0, 0, 1};
+  const Mat3 down = robot_from_omni_opencv_camera({});
+  expect_near(down * image_up, {1, 0, 0});
+  expect_near(down * image_left, {0, 1, 0});
+  expect_near(down * axis, {0, 0, -1});
+  EXPECT_NEAR(determinant(down), 1, 1e-12);
+  const Mat3 up =
+      robot_from_omni_opencv_camera({.left = ImageSide::right, .centre_looks_down = false});
+  expect_near(up * image_up, {1, 0, 0});
+  expect_near(up * image_left, {0, -1, 0});
+  expect_near(up * axis, {0, 0, 1});
+  EXPECT_NEAR(determinant(up), 1, 1e-12);  // no mirror
+  const Mat3 mirror = robot_from_omni_opencv_camera({.left = ImageSide::right});
+  expect_near(mirror * axis, {0, 0, -1});
+  EXPECT_NEAR(determinant(mirror), -1, 1e-12);
+}
+
+// What a fisheye that looks ahead needs: the axis turns from the ground to the front.
+TEST(Mount, APitchOfMinusNinetyDegreesTurnsACameraThatLooksDownAhead) {
+  const Mat3 r = robot_from_omni_opencv_camera({.pitch = radians(-90)});
+  expect_near(r * Vec3{0, 0, 1}, {1, 0, 0});
+  expect_near(r * Vec3{0, -1, 0}, {0, 0, 1});
+  expect_near(r * Vec3{-1, 0, 0}, {0, 1, 0});
+}
+
 TEST(Mount, OfACameraThatLooksAheadTheImagesLeftIsTheRobotsLeft) {
   const Mat3 r = robot_from_forward_camera({.forward = ImageSide::down});  // sides do not matter
   expect_near(r * Vec3{0, 0, 1}, {1, 0, 0});

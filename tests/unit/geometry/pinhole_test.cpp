@@ -71,8 +71,8 @@ TEST(Pinhole, PixelToRayToPixelComesBack) {
     for (double column = 0; column < 640; column += 17) {
       const auto back = camera.pixel_from_ray(camera.ray_from_pixel({row, column}));
       ASSERT_TRUE(back);
-      EXPECT_NEAR(back->row, row, 0.01);
-      EXPECT_NEAR(back->column, column, 0.01);
+      EXPECT_NEAR(back->row, row, 1e-9);
+      EXPECT_NEAR(back->column, column, 1e-9);
     }
   }
 }
@@ -83,6 +83,15 @@ TEST(Pinhole, WhatLiesBehindOrBeyondTheDistortionsReachIsNotSeen) {
   EXPECT_FALSE(camera.pixel_from_ray({1, 0, 0}));
   // k1 = -0.28 folds the image back somewhere beyond a slope of one.
   EXPECT_FALSE(camera.pixel_from_ray({30, 0, 1}));
+  EXPECT_FALSE(is_ray(camera.ray_from_pixel({241, 320.5 + 500 * 5})));
+}
+
+TEST(Pinhole, ACalibrationOfAFisheyeIsRefused) {
+  EXPECT_THAT(problem_of(with("camera_matrix", "fisheye_model: 1\ncamera_matrix")),
+              HasSubstr("set camera.model = \"fisheye\""));
+  EXPECT_THAT(problem_of(with("camera_matrix", "xi: 1.2\ncamera_matrix")), HasSubstr("omnidir"));
+  EXPECT_EQ(problem_of(with("camera_matrix", "distortion_model: plumb_bob\ncamera_matrix")),
+            "none");
 }
 
 TEST(Pinhole, DamagedCalibrationsAreNamed) {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "geometry/angles.h"
+#include "geometry/fisheye.h"
 #include "test_camera.h"
 
 namespace bole::simulate {
@@ -174,6 +175,19 @@ TEST(Simulator, HiddenTrunksAreMarkedHidden) {
   }
   EXPECT_GT(hidden, 5);
   EXPECT_GT(open, 5);
+}
+
+// The corners of a fisheye's image, which no mask need cover.
+TEST(PixelRays, APixelToWhichNoRayLeadsLooksNowhere) {
+  Camera camera;
+  camera.model = std::make_unique<FisheyeModel>(FisheyeModel::Parameters{
+      .matrix = {.focal_x = 10, .focal_y = 10, .centre_column = 40, .centre_row = 40},
+      .distortion = {},
+      .size = {80, 80}});
+  camera.mask.assign(std::size_t{80} * 80, 255);
+  const PixelRays rays(camera);
+  EXPECT_TRUE(rays.at(40, 60).seen());
+  EXPECT_FALSE(rays.at(2, 2).seen());
 }
 
 TEST(Presets, UnknownNamesAreRefused) { EXPECT_ANY_THROW(preset("jungle")); }
