@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <span>
 
+#include "evaluate/figures.h"
 #include "geometry/angles.h"
 #include "geometry/ground.h"
 #include "geometry/ocam.h"
@@ -77,12 +78,6 @@ std::vector<CameraCheck::Arc> blind_arcs(const PanoramaGeometry& panorama, const
   return arcs;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 void check_sight(const Camera& camera, const WarpTable& table, CameraCheck& check) {
   const PanoramaGeometry& panorama = check.panorama;
   const SeenMap seen = table.seen();
@@ -95,10 +90,11 @@ void check_sight(const Camera& camera, const WarpTable& table, CameraCheck& chec
     const double lowest = panorama.tangent_of_row(rows.last - 1);
     if (lowest < 0) nearest.push_back(ground_distance(lowest, camera.config.mount.height));
   }
-  check.highest_seen = median(tops);
+  check.highest_seen = *median(std::move(tops));
   if (nearest.empty()) return;
-  const auto [least, most] = std::ranges::minmax(nearest);
-  check.nearest_ground = {least, median(nearest), most};
+  std::ranges::sort(nearest);
+  const double p95 = nearest[(nearest.size() - 1) * 95 / 100];
+  check.nearest_ground = {nearest.front(), *median(nearest), p95};
 }
 
 // Along the horizon, in steps of half a degree.
@@ -137,11 +133,21 @@ void check_resolution(const Camera& camera, CameraCheck& check) {
   check.narrowest_trunk = angular_width(search.diameter.low, search.range.high) * focal;
 }
 
+std::string name_of(CameraConfig::Model model) {
+  switch (model) {
+    case CameraConfig::Model::ocam:
+      return "ocam";
+    case CameraConfig::Model::pinhole:
+      break;
+  }
+  return "pinhole";
+}
+
 }  // namespace
 
 CameraCheck check_camera(const Camera& camera, const WarpTable& table) {
   CameraCheck check;
-  check.model = camera.config.model == CameraConfig::Model::ocam ? "ocam" : "pinhole";
+  check.model = name_of(camera.config.model);
   check.image = camera.model->image_size();
   check.masked = camera.mask.empty() ? 0 : share_of(camera.mask, false);
   check.panorama = table.panorama();

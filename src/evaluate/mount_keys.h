@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "geometry/camera_config.h"
+
+namespace bole {
+
+/// The camera sees all round, and its axis stands upright: [mount] has forward, left and centre.
+bool sees_all_round(const CameraConfig& config);
+
+/// The keys of [mount] that say how this camera is tilted, for sentences: "centre, roll_deg and
+/// pitch_deg".
+std::string tilt_keys(const CameraConfig& config);
+
+}  // namespace bole
