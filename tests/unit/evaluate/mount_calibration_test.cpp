@@ -1,0 +1,52 @@
+#include "evaluate/mount_calibration.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/angles.h"
+#include "unit/warp/test_cameras.h"
+
+namespace bole {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(MountCalibration, GivesTheHorizonsRowAndItsSigma) {
+  const test::TemporaryFolder folder;
+  const Camera camera = load_camera(write_pinhole(folder));
+  const Measured row = horizon_row_of(camera, radians(1));
+  EXPECT_NEAR(row.value, 50, 1e-6);
+  const double focal = 80 / std::tan(radians(30));
+  EXPECT_NEAR(row.sigma, focal * radians(1), 0.05);
+}
+
+TEST(MountCalibration, RefusesAHorizonThatTheLensCannotShow) {
+  const test::TemporaryFolder folder;
+  Camera camera = load_camera(write_pinhole(folder));
+  Mount mount = camera.config.mount;
+  mount.roll = radians(90);
+  remount(camera, mount);
+  try {
+    horizon_row_of(camera, radians(1));
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("mend horizon_row and roll_deg"));
+  }
+}
+
+TEST(MountCalibration, TellsWhyNoImageIsOfUse) {
+  const test::TemporaryFolder folder;
+  Camera camera = load_camera(write_small_camera(folder));
+  const std::vector<std::filesystem::path> images = {folder.write("a.jpg", "no picture"),
+                                                     folder.write("b.yuyv", "short")};
+  try {
+    calibrate_mount(camera, images, {}, [](int, int) {});
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("of 2 images 2 could not be used"));
+    EXPECT_THAT(error.what(), HasSubstr("a.jpg: is no image"));
+  }
+}
+
+}  // namespace
+}  // namespace bole
