@@ -14,9 +14,10 @@
 namespace bole {
 namespace {
 
-constexpr double kSettled = radians(0.05);   // a correction not worth another round
-constexpr double kNearlySettled = 0.3;       // standard deviations: nothing to warn of either
-constexpr int kMostRounds = 10, kWhole = 4;  // rounds, and those of whole steps
+constexpr double kNear = radians(0.2);  // a correction of which part is only chance
+constexpr int kMostSteps = 6;           // whole ones, until it is near
+constexpr int kAveraged = 4;            // estimates from there on
+constexpr double kSettled = 0.3;        // standard deviations: what may be left
 constexpr int kFewestTrunks = 8;
 constexpr double kVaguest = radians(1);  // standard deviation that is still of use
 
@@ -110,34 +111,27 @@ void require_enough(const MountTilt& tilt, double yaw, const Images& images) {
   }
 }
 
-// What the frames show of the mount that the camera is left with.
-struct Settled {
+// What the images show of the mount that a camera has.
+struct Evidence {
   Frames frames;
   MountTilt tilt;  // what is left of it
 };
 
-// A trunk that is just found, or just not, may come and go with the mount: then whole steps would
-// lead to and fro for ever, ever shorter ones lead to the middle.
-Settled settle(Camera& camera, Images& images, const std::function<void(int, int)>& progress) {
-  for (int round = 1;; ++round) {
-    Settled now{images.look(camera, progress), {}};
-    if (now.frames.empty()) {
-      throw std::runtime_error("no image is of use; give frames of this camera" + images.losses());
-    }
-    const Mount& mount = camera.config.mount;
-    now.tilt = estimate_mount_tilt(now.frames, mount.height);
-    require_enough(now.tilt, mount.yaw, images);
-    const cv::Vec2d& tilt = now.tilt.both.tilt;
-    if (cv::norm(tilt) <= kSettled || round == kMostRounds) return now;
-    const double step = round <= kWhole ? 1 : 1.0 / (round - kWhole + 1);
-    remount(camera, levelled(mount, up_of(step * tilt)));
+Evidence look_at(Images& images, const Camera& camera,
+                 const std::function<void(int, int)>& progress) {
+  Evidence now{images.look(camera, progress), {}};
+  if (now.frames.empty()) {
+    throw std::runtime_error("no image is of use; give frames of this camera" + images.losses());
   }
+  now.tilt = estimate_mount_tilt(now.frames, camera.config.mount.height);
+  require_enough(now.tilt, camera.config.mount.yaw, images);
+  return now;
 }
 
 std::vector<std::string> doubts(const MountTilt& tilt, const TiltFigure& lean_against_feet) {
   std::vector<std::string> warnings;
   const double left = cv::norm(tilt.both.tilt);
-  if (left > kSettled && distance(tilt.both) > kNearlySettled) {
+  if (left > kNear && distance(tilt.both) > kSettled) {
     warnings.push_back("the estimate has not settled: the frames still ask for " +
                        fixed(degrees(left), 2) + " degrees more than is printed; take more frames");
   }
@@ -152,6 +146,16 @@ std::vector<std::string> doubts(const MountTilt& tilt, const TiltFigure& lean_ag
 }
 
 }  // namespace
+
+Mount settled(Mount mount, const std::function<cv::Vec2d(const Mount&)>& tilt_under) {
+  int averaged = 0;
+  for (int round = 1;; ++round) {
+    const cv::Vec2d tilt = tilt_under(mount);
+    if (averaged > 0 || cv::norm(tilt) <= kNear || round > kMostSteps) ++averaged;
+    if (averaged > kAveraged) return mount;
+    mount = levelled(mount, up_of(tilt / std::max(1, averaged)));
+  }
+}
 
 Measured horizon_row_of(const Camera& camera, double pitch_sigma) {
   const auto row = [&](double pitch) {
@@ -172,8 +176,13 @@ MountCalibration calibrate_mount(Camera& camera, std::span<const std::filesystem
                                  std::span<const MeasuredTree> trees,
                                  const std::function<void(int, int)>& progress) {
   Images looked_at(images);
-  const auto [frames, tilt] = settle(camera, looked_at, progress);
-  const Mount& mount = camera.config.mount;
+  Evidence evidence;
+  const Mount mount = settled(camera.config.mount, [&](const Mount& supposed) {
+    remount(camera, supposed);
+    evidence = look_at(looked_at, camera, progress);
+    return evidence.tilt.both.tilt;
+  });
+  const MountTilt& tilt = evidence.tilt;
   if (cv::norm(tilt.both.tilt) > kVaguest) {
     throw std::runtime_error("the estimate does not settle; take more frames, or mend " +
                              tilt_keys(camera.config) + " roughly by hand first" +
@@ -186,11 +195,11 @@ MountCalibration calibrate_mount(Camera& camera, std::span<const std::filesystem
   result.pitch = {mount.pitch, pitch_sigma};
   if (camera.config.horizon_row) result.horizon_row = horizon_row_of(camera, pitch_sigma);
   if (!trees.empty()) {
-    result.height = estimate_height(frames, trees, mount.height, tilt.both.covariance);
+    result.height = estimate_height(evidence.frames, trees, mount.height, tilt.both.covariance);
   }
   result.lean_against_feet = {tilt.by_lean.tilt - tilt.by_feet.tilt,
                               tilt.by_lean.covariance + tilt.by_feet.covariance};
-  result.frames = static_cast<int>(frames.size());
+  result.frames = static_cast<int>(evidence.frames.size());
   result.trunks = tilt.trunks;
   result.left_out = looked_at.left_out();
   result.warnings = doubts(tilt, result.lean_against_feet);

@@ -42,6 +42,12 @@ MountCalibration calibrate_mount(Camera& camera, std::span<const std::filesystem
                                  std::span<const MeasuredTree> trees,
                                  const std::function<void(int, int)>& progress);
 
+/// The mount under which no tilt is left, searched from `mount` on: `tilt_under` tells the tilt (as
+/// TiltFigure's) that is seen under a mount, last under the one that is returned. Nearly there,
+/// what trunks are found, and how they lean, changes by chance with every bit of the mount: so the
+/// last estimates are averaged, the n-th of them followed by 1 / n.
+Mount settled(Mount mount, const std::function<cv::Vec2d(const Mount&)>& tilt_under);
+
 /// The row of a forward camera's horizon in the image's middle column, where its pitch is known to
 /// `pitch_sigma` radians. Throws std::runtime_error when the lens does not show it.
 Measured horizon_row_of(const Camera& camera, double pitch_sigma);

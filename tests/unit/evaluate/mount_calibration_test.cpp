@@ -11,6 +11,36 @@ namespace {
 
 using testing::HasSubstr;
 
+// The tilt under a mount whose roll and pitch should be 1 and -2 degrees.
+cv::Vec2d tilt_under(const Mount& mount) {
+  return {radians(-2) - mount.pitch, mount.roll - radians(1)};
+}
+
+TEST(MountCalibration, ComesToTheMountFromAfar) {
+  Mount asked_last;
+  const Mount found = settled({.roll = radians(-5), .pitch = radians(4)}, [&](const Mount& mount) {
+    asked_last = mount;
+    return 0.7 * tilt_under(mount);
+  });
+  EXPECT_NEAR(degrees(found.roll), 1, 0.1);
+  EXPECT_NEAR(degrees(found.pitch), -2, 0.1);
+  EXPECT_EQ(asked_last.roll, found.roll);
+  EXPECT_EQ(asked_last.pitch, found.pitch);
+}
+
+TEST(MountCalibration, AveragesEstimatesThatGoToAndFro) {
+  for (const double by : {0.15, 0.5}) {
+    int round = 0;
+    const Mount found = settled({}, [&](const Mount& mount) {
+      const double chance = radians(round++ % 2 == 0 ? by : -by);
+      return tilt_under(mount) + cv::Vec2d(chance, chance);
+    });
+    EXPECT_NEAR(degrees(found.roll), 1, 0.1);
+    EXPECT_NEAR(degrees(found.pitch), -2, 0.1);
+    EXPECT_LT(round, 12);
+  }
+}
+
 TEST(MountCalibration, GivesTheHorizonsRowAndItsSigma) {
   const test::TemporaryFolder folder;
   const Camera camera = load_camera(write_pinhole(folder));
