@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <map>
 #include <system_error>
 
@@ -19,13 +20,12 @@ void write_picture(const std::filesystem::path& file, const cv::Mat3b& picture) 
 void prepare_annotations(const std::filesystem::path& folder, std::span<const std::string> images) {
   std::map<std::string, std::string> by_name;
   for (const std::string& image : images) {
-    const std::string name = std::filesystem::path(image).stem().string();
-    const auto [other, is_new] = by_name.emplace(name, image);
+    const auto [other, is_new] = by_name.emplace(std::filesystem::path(image).stem(), image);
     if (is_new) continue;
-    throw ConfigError(
-        "--annotate", "",
-        other->second + " and " + image + " would both be drawn as " + name + "_raw.png",
-        "give images whose names differ before the ending");
+    std::string problem = image;
+    problem.append(" would be drawn under the name of ").append(other->second);
+    throw ConfigError("--annotate", "", problem,
+                      "give images whose names differ before the ending");
   }
   std::error_code error;
   std::filesystem::create_directories(folder, error);
