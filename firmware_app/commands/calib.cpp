@@ -240,7 +240,7 @@ void add_calib(CLI::App& app) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   mount_command
       ->add_option("FRAMES", options->images,
-                   "Images of trunks or raw frames, or folders of them, in order")
+                   "Images or raw frames of trunks, or folders of them, in order")
       ->type_name("")
       ->required();
   mount_command->callback([options] { mount(*options); });
