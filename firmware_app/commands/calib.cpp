@@ -3,7 +3,11 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <stdexcept>
+#include <string>
+#include <system_error>
+#include <vector>
 
 #include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
@@ -34,16 +38,22 @@ struct Options {
 
 void annotate(const Options& options, const Camera& camera, const WarpTable& table) {
   Warper warper(table);
+  std::size_t bad = 0;
   for (const fs::path image : options.images) {
+    cv::Mat3b picture;
     try {
-      const cv::Mat3b picture = read_picture(image);
+      picture = read_picture(image);
       warper.warp(view_of(picture));  // refuses a picture that is not this camera's
-      write_frame_annotations(options.annotate, image.stem().string(), camera, table, picture, {});
-    } catch (const ConfigError&) {
-      throw;
     } catch (const std::runtime_error& error) {
-      throw std::runtime_error(image.string() + ": " + error.what());
+      spdlog::error("{}: {}", image.string(), error.what());
+      ++bad;
+      continue;
     }
+    write_frame_annotations(options.annotate, image.stem().string(), camera, table, picture, {});
+  }
+  if (bad > 0) {
+    throw std::runtime_error("images that could not be drawn on: " + std::to_string(bad) + " of " +
+                             std::to_string(options.images.size()));
   }
 }
 
@@ -53,6 +63,7 @@ void check(const Options& options) {
                       "give --annotate FOLDER and IMAGE..., or neither");
   }
   const Camera camera = load_camera(options.camera);
+  if (!options.annotate.empty()) prepare_annotations(options.annotate, options.images);
   const WarpTable table = load_or_build_warp_table(camera, default_cache_directory()).table;
   const CameraCheck found = check_camera(camera, table);
   std::puts((options.json ? to_json(found) : to_text(found)).c_str());
@@ -78,16 +89,41 @@ MeasuredTree parse_tree(const std::string& text) {
   return {radians(bearing), range};
 }
 
+// What stands in one place twice would tell the height twice over.
+std::vector<MeasuredTree> parse_trees(const std::vector<std::string>& texts) {
+  std::vector<MeasuredTree> trees;
+  for (const std::string& text : texts) {
+    const MeasuredTree tree = parse_tree(text);
+    for (const MeasuredTree& other : trees) {
+      if (std::abs(wrap_angle(tree.bearing - other.bearing)) > kSameBearing) continue;
+      throw ConfigError("--tree", "", "\"" + text + "\" stands beside another measured tree",
+                        "give each tree once, and trees more than 3 degrees of bearing apart");
+    }
+    trees.push_back(tree);
+  }
+  return trees;
+}
+
+// Files and folders in their order, each file once: a frame that is given twice is no more evidence
+// than once.
 std::vector<fs::path> frames_of(const Options& options, const Camera& camera) {
   const fs::path mask =
       camera.config.mask.empty() ? fs::path() : camera.file.parent_path() / camera.config.mask;
   std::vector<fs::path> frames;
+  std::set<fs::path> known;
   for (const fs::path path : options.images) {
-    if (fs::is_directory(path)) {
-      const std::vector<fs::path> inside = frames_in(path, mask);
-      frames.insert(frames.end(), inside.begin(), inside.end());
-    } else {
-      frames.push_back(path);
+    std::error_code error;
+    const fs::path place = fs::canonical(path, error);
+    if (error) {
+      throw ConfigError(path, "", "cannot be opened: " + error.message(),
+                        "give images, or folders of them");
+    }
+    if (!fs::is_directory(place, error)) {
+      if (known.insert(place).second) frames.push_back(path);
+      continue;
+    }
+    for (const fs::path& file : frames_in(path, mask)) {
+      if (known.insert(fs::weakly_canonical(file, error)).second) frames.push_back(file);
     }
   }
   return frames;
@@ -107,27 +143,39 @@ std::vector<Key> keys_of(const CameraConfig& before, const MountCalibration& fou
   };
   const Mount& mount = before.mount;
   std::vector<Key> keys = {{"roll_deg", degrees(mount.roll), in_degrees(found.roll), 2}};
-  if (before.horizon_row) {
-    keys.push_back({"horizon_row", *before.horizon_row, found.horizon_row, 1});
+  if (before.horizon_row && found.horizon_row) {
+    keys.push_back({"horizon_row", *before.horizon_row, *found.horizon_row, 1});
   } else {
     keys.push_back({"pitch_deg", degrees(mount.pitch), in_degrees(found.pitch), 2});
   }
-  if (found.height.sigma > 0) keys.push_back({"height_m", mount.height, found.height, 3});
+  if (found.height) keys.push_back({"height_m", mount.height, *found.height, 3});
   return keys;
 }
 
 void print_json(const std::vector<Key>& keys, const MountCalibration& found) {
-  nlohmann::ordered_json json = {
-      {"frames", found.frames}, {"unreadable", found.unreadable.size()}, {"trunks", found.trunks}};
+  nlohmann::ordered_json left_out = nlohmann::ordered_json::array();
+  for (const LeftOut& image : found.left_out) {
+    left_out.push_back({{"file", image.file.string()}, {"error", image.error}});
+  }
+  nlohmann::ordered_json json = {{"frames", found.frames}, {"trunks", found.trunks}};
   for (const Key& key : keys) {
     json[key.name] = {{"old", key.before}, {"new", key.after.value}, {"sigma", key.after.sigma}};
   }
-  std::puts(json.dump().c_str());
+  const cv::Vec2d& difference = found.lean_against_feet.tilt;
+  json["lean_against_feet_deg"] = {{"forward", degrees(difference[0])},
+                                   {"left", degrees(difference[1])}};
+  json["left_out"] = left_out;
+  json["warnings"] = found.warnings;
+  std::puts(json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+}
+
+std::string counted(int number, const std::string& noun) {
+  return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
 }
 
 void print_text(const std::vector<Key>& keys, const MountCalibration& found) {
-  std::printf("%d frames, %d trunks (one that was lost from sight may count again)\n", found.frames,
-              found.trunks);
+  std::printf("%s, %s (one that was lost from sight may count again)\n",
+              counted(found.frames, "frame").c_str(), counted(found.trunks, "trunk").c_str());
   for (const Key& key : keys) {
     const double change = std::abs(key.after.value - key.before);
     std::printf("%-11s %.*f -> %.*f \u00b1 %.*f%s\n", key.name, key.digits, key.before, key.digits,
@@ -138,25 +186,16 @@ void print_text(const std::vector<Key>& keys, const MountCalibration& found) {
   for (const Key& key : keys) std::printf("%s = %.*f\n", key.name, key.digits, key.after.value);
 }
 
-// Three standard deviations are not chance.
-void warn_of_slope(const TiltFigure& difference) {
-  const cv::Vec2d& off = difference.tilt;
-  if (off.dot(difference.covariance.inv() * off) < 9) return;
-  spdlog::warn(
-      "lean and feet differ by {:.1f} degrees: the ground slopes, or the wood leans; "
-      "take frames in several places, facing different ways",
-      degrees(cv::norm(off)));
-}
-
 void mount(const Options& options) {
-  std::vector<MeasuredTree> trees;
-  for (const std::string& text : options.trees) trees.push_back(parse_tree(text));
+  const std::vector<MeasuredTree> trees = parse_trees(options.trees);
   Camera camera = load_camera(options.camera);
   const CameraConfig before = camera.config;
   const MountCalibration found =
       calibrate_mount(camera, frames_of(options, camera), trees, show_progress);
-  for (const std::string& bad : found.unreadable) spdlog::warn("left out: {}", bad);
-  warn_of_slope(found.lean_against_feet);
+  for (const LeftOut& bad : found.left_out) {
+    spdlog::warn("left out: {}: {}", bad.file.string(), bad.error);
+  }
+  for (const std::string& warning : found.warnings) spdlog::warn("{}", warning);
   const std::vector<Key> keys = keys_of(before, found);
   if (options.json) {
     print_json(keys, found);
@@ -200,7 +239,8 @@ void add_calib(CLI::App& app) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   mount_command
-      ->add_option("FRAMES", options->images, "Images of trunks, or folders of them, in order")
+      ->add_option("FRAMES", options->images,
+                   "Images or raw frames of trunks, or folders of them, in order")
       ->type_name("")
       ->required();
   mount_command->callback([options] { mount(*options); });

@@ -23,6 +23,7 @@ struct Options {
 
 void detect(const Options& options) {
   ImageDetector detector(options.camera, *detector_mode_from_name(options.mode));
+  if (!options.annotate.empty()) prepare_annotations(options.annotate, options.images);
   std::size_t bad = 0;
   std::string first_bad;  // the image and what is wrong with it
   for (const fs::path image : options.images) {

@@ -1,5 +1,12 @@
 #include "evaluate/annotate.h"
 
+#include <unistd.h>
+
+#include <cerrno>
+#include <map>
+#include <system_error>
+
+#include "base/errors.h"
 #include "base/files.h"
 #include "base/png_file.h"
 #include "evaluate/image_detector.h"
@@ -10,10 +17,30 @@ void write_picture(const std::filesystem::path& file, const cv::Mat3b& picture) 
   write_file_atomically(file, encode_png(view_of(picture)));
 }
 
+void prepare_annotations(const std::filesystem::path& folder, std::span<const std::string> images) {
+  std::map<std::string, std::string> by_name;
+  for (const std::string& image : images) {
+    const auto [other, is_new] = by_name.emplace(std::filesystem::path(image).stem(), image);
+    if (is_new) continue;
+    std::string problem = image;
+    problem.append(" would be drawn under the name of ").append(other->second);
+    throw ConfigError("--annotate", "", problem,
+                      "give images whose names differ before the ending");
+  }
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!error && ::access(folder.c_str(), W_OK | X_OK) != 0) {
+    error = {errno, std::generic_category()};
+  }
+  if (error) {
+    throw ConfigError("--annotate", "", folder.string() + " cannot be written: " + error.message(),
+                      "give a folder that may be written");
+  }
+}
+
 void write_frame_annotations(const std::filesystem::path& folder, const std::string& name,
                              const Camera& camera, const WarpTable& table, const cv::Mat3b& picture,
                              std::span<const Tree> trees) {
-  std::filesystem::create_directories(folder);
   std::vector<TrunkMark> marks;
   for (const Tree& tree : trees) marks.push_back(mark_of(tree));
   write_picture(folder / (name + "_panorama.png"), draw_panorama(camera, table, picture, marks));

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <span>
 
+#include "evaluate/figures.h"
 #include "geometry/angles.h"
 #include "geometry/ground.h"
 #include "geometry/ocam.h"
@@ -77,12 +78,6 @@ std::vector<CameraCheck::Arc> blind_arcs(const PanoramaGeometry& panorama, const
   return arcs;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 void check_sight(const Camera& camera, const WarpTable& table, CameraCheck& check) {
   const PanoramaGeometry& panorama = check.panorama;
   const SeenMap seen = table.seen();
@@ -95,10 +90,11 @@ void check_sight(const Camera& camera, const WarpTable& table, CameraCheck& chec
     const double lowest = panorama.tangent_of_row(rows.last - 1);
     if (lowest < 0) nearest.push_back(ground_distance(lowest, camera.config.mount.height));
   }
-  check.highest_seen = median(tops);
+  check.highest_seen = *median(std::move(tops));
   if (nearest.empty()) return;
-  const auto [least, most] = std::ranges::minmax(nearest);
-  check.nearest_ground = {least, median(nearest), most};
+  std::ranges::sort(nearest);
+  const double p95 = nearest[(nearest.size() - 1) * 95 / 100];
+  check.nearest_ground = {nearest.front(), *median(nearest), p95};
 }
 
 // Along the horizon, in steps of half a degree.

@@ -34,9 +34,10 @@ struct CameraCheck {
   double seen = 0;          ///< share of it
   std::vector<Arc> blind;   ///< bearings of the kept part at which nothing is seen
   double highest_seen = 0;  ///< radians, median over bearings of the highest elevation seen
-  /// Horizontal distance from which on the ground is seen, over the bearings that see any.
+  /// Horizontal distance from which on the ground is seen, over the bearings that see any; p95: the
+  /// 95th percentile.
   struct NearestGround {
-    double least = 0, median = 0, most = 0;
+    double least = 0, median = 0, p95 = 0;
   };
   std::optional<NearestGround> nearest_ground;
   double columns_a_degree = 0;

@@ -12,12 +12,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr double kLeastShown = 0.05;  // pixels a degree that do not print as none
+
 Json json_of(const CameraCheck::Error& error) {
   return {{"mean_px", error.mean_px}, {"most_px", error.most_px}};
 }
 
 Json json_of(const CameraCheck::NearestGround& ground) {
-  return {{"least_m", ground.least}, {"median_m", ground.median}, {"most_m", ground.most}};
+  return {{"least_m", ground.least}, {"median_m", ground.median}, {"p95_m", ground.p95}};
 }
 
 std::string in_degrees(double angle, int digits = 0) { return fixed(degrees(angle), digits); }
@@ -59,14 +61,15 @@ std::string blind_line(const CameraCheck& check) {
 std::string ground_line(const CameraCheck& check) {
   if (!check.nearest_ground) return "none";
   return "from " + fixed(check.nearest_ground->median, 2) + " m on (" +
-         fixed(check.nearest_ground->least, 2) + " to " + fixed(check.nearest_ground->most, 2) +
-         " by bearing)";
+         fixed(check.nearest_ground->least, 2) + " to " + fixed(check.nearest_ground->p95, 2) +
+         " at 95 % of bearings)";
 }
 
 std::string resolution_line(const CameraCheck& check) {
   std::string line = fixed(check.columns_a_degree, 1) + " columns a degree, ";
-  line += check.pixels_a_degree > 0 ? fixed(check.pixels_a_degree, 1) + " pixels at the horizon"
-                                    : "no pixel at the horizon";
+  line += check.pixels_a_degree >= kLeastShown
+              ? fixed(check.pixels_a_degree, 1) + " pixels at the horizon"
+              : "no pixel at the horizon";
   for (const CameraCheck::RowWorth& worth : check.row_worth) {
     line += (worth.range == check.row_worth.front().range ? "; a row is " : ", ") +
             fixed(worth.metres, 3) + " m at " + fixed(worth.range, 0) + " m";

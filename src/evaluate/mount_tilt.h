@@ -34,8 +34,9 @@ struct MountTilt {
 /// with x = s / (1 - s), s = sin(width / 2); c = 2 height / the typical diameter, and k for trees
 /// that are thicker the farther away they are found, are fitted too.
 /// A trunk that stays in sight from frame to frame counts once in all. The two are joined by how
-/// well each is known; neither is known better than the ground is level, or by more than 100
-/// trunks. Whatever the witnesses do not tell has a standard deviation of 0.1.
+/// well each is known: neither by more than 100 trunks, as neighbours lean and stand alike; the
+/// feet no better than the ground is level. Whatever the witnesses do not tell has a standard
+/// deviation of 0.1.
 MountTilt estimate_mount_tilt(std::span<const std::vector<TiltWitness>> frames, double height);
 
 }  // namespace bole

@@ -4,9 +4,8 @@
 #include <map>
 
 #include "base/errors.h"
+#include "capture/replay/frame_file.h"
 #include "capture/replay/frame_names.h"
-#include "capture/replay/image_file.h"
-#include "capture/replay/jpeg.h"
 #include "capture/replay/media.h"
 #include "capture/replay/timestamps.h"
 
@@ -18,13 +17,10 @@ namespace fs = std::filesystem;
 struct FrameFile {
   fs::path path;
   std::string name;
-  std::optional<PixelFormat> raw;  // none: an image
   std::int64_t utime_us = 0;
 };
 
-FrameFile frame_file(const fs::path& path) {
-  return {path, path.filename().string(), raw_format(path)};
-}
+FrameFile frame_file(const fs::path& path) { return {path, path.filename().string()}; }
 
 std::vector<FrameFile> list_folder(const ReplayOptions& options) {
   std::vector<FrameFile> files;
@@ -52,7 +48,7 @@ void stamp_by_table(std::vector<FrameFile>& files, const fs::path& table) {
 class FileMedia : public ReplayMedia {
  public:
   FileMedia(std::vector<FrameFile> files, const ReplayOptions& options)
-      : files_(std::move(files)), size_(options.size), images_(options.size) {
+      : files_(std::move(files)), reader_(options.size) {
     const std::int64_t span_us = files_.back().utime_us - files_.front().utime_us;
     period_us_ =
         span_us > 0 ? span_us / (std::ssize(files_) - 1) : std::llround(1e6 / options.rate_hz);
@@ -81,11 +77,7 @@ class FileMedia : public ReplayMedia {
   void read(FrameSlot& slot) override {
     const FrameFile& file = files_.at(next_++);
     try {
-      if (file.raw) {
-        read_raw(file.path, *file.raw, slot);
-      } else {
-        images_.read(file.path, slot);
-      }
+      reader_.read(file.path, slot);
     } catch (const UnreadableFrame& error) {
       throw UnreadableFrame(file.name + ": " + error.what());
     }
@@ -102,23 +94,8 @@ class FileMedia : public ReplayMedia {
     return files_[index].utime_us;
   }
 
-  void read_raw(const fs::path& path, PixelFormat format, FrameSlot& slot) const {
-    if (size_.width <= 0) throw UnreadableFrame("needs a calibration that gives its size");
-    const std::size_t needed = packed_frame_bytes(format, size_);
-    read_frame_file(path, slot.bytes);
-    if (format == PixelFormat::mjpeg) {
-      if (!is_jpeg(slot.bytes)) throw UnreadableFrame("does not begin as a JPEG does");
-    } else if (slot.bytes.size() != needed || !view_packed(format, size_, slot.bytes)) {
-      throw UnreadableFrame("has " + std::to_string(slot.bytes.size()) + " bytes; " +
-                            std::to_string(needed) + " make a frame of the calibration's size");
-    }
-    slot.format = format;
-    slot.size = size_;
-  }
-
   std::vector<FrameFile> files_;
-  ImageSize size_;
-  ImageReader images_;
+  FrameReader reader_;
   std::int64_t period_us_ = 0;
   std::size_t next_ = 0;
 };

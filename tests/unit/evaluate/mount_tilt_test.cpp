@@ -5,37 +5,12 @@
 #include <cmath>
 
 #include "detect/ground_tilt.h"
-#include "evaluate/mount_calibration.h"
 #include "geometry/angles.h"
-#include "geometry/ground.h"
 #include "geometry/mount.h"
+#include "unit/evaluate/seen_trunk.h"
 
 namespace bole {
 namespace {
-
-constexpr double kHeight = 1.2;
-constexpr double kShown = 0.8;  // of a lean, by the fit
-
-using Frame = std::vector<TiltWitness>;
-
-// A trunk on level ground as a camera sees it whose mount differs from what is said of it: `seen`
-// leads from the robot frame to the one that is taken for it.
-TiltWitness seen_through(const Mat3& seen, double bearing, double range, double diameter) {
-  const double foot = range - diameter / 2;
-  const auto place = [&](double up) {
-    return seen * Vec3{foot * std::cos(bearing), foot * std::sin(bearing), up};
-  };
-  const Vec3 low = place(-kHeight), high = place(0);
-  const auto turn = [](const Vec3& v) { return std::atan2(v.y, v.x); };
-  const auto tangent = [](const Vec3& v) { return v.z / std::hypot(v.x, v.y); };
-  const double right = wrap_angle(turn(high) - turn(low)), down = tangent(high) - tangent(low);
-  return {.bearing = turn(low),
-          .sight = {.down = -tangent(low),
-                    .down_sigma = 0.003,
-                    .angular_width = angular_width(diameter, range)},
-          .lean = kShown * right / down,
-          .weight = 0.9};
-}
 
 // Trees all round, or within `arc` about forward; not one is the same in two frames.
 std::vector<Frame> wood(const Mat3& seen, int frames, double arc = 2 * kPi) {
@@ -127,25 +102,6 @@ TEST(MountTilt, IsHardlyMovedByCrookedTreesAndHiddenFeet) {
   }
   const MountTilt found = estimate_mount_tilt(frames, kHeight);
   EXPECT_LT(cv::norm(found.both.tilt), 0.005);
-}
-
-TEST(MountHeight, FollowsFromMeasuredTrees) {
-  std::vector<Frame> frames(3);
-  for (Frame& frame : frames) {
-    frame.push_back(seen_through({}, 0.5, 3, 0.3));
-    frame.push_back(seen_through({}, -2, 4, 0.4));
-  }
-  const std::vector<MeasuredTree> trees = {{0.49, 3}, {-2.01, 4}};
-  const Measured height = estimate_height(frames, trees, 0.9 * kHeight, 0.004);
-  EXPECT_NEAR(height.value, kHeight, 1e-3);
-  EXPECT_GT(height.sigma, 0.01);
-  EXPECT_LT(height.sigma, 0.1);
-}
-
-TEST(MountHeight, IsRefusedWhereNoTrunkStandsAtAMeasuredBearing) {
-  const std::vector<Frame> frames = {{seen_through({}, 0.5, 3, 0.3)}};
-  const std::vector<MeasuredTree> trees = {{0.6, 3}};
-  EXPECT_THROW(estimate_height(frames, trees, kHeight, 0.004), std::runtime_error);
 }
 
 }  // namespace
