@@ -62,6 +62,7 @@ def test_trees_rendered_through_a_camera_are_found_through_it(bolectl, camera, t
     checked = json.loads(bolectl("calib", "check", "--json", "--camera", file).stdout)
     assert checked["model"] == model
     assert checked["there_and_back"]["most_px"] < 1e-6
+    assert not [warning for warning in checked["warnings"] if "mount" in warning or "bearing" in warning]
     drive = tmp_path / "drive"
     run = bolectl("sim", "--out", drive, "--frames", "5", "--seed", "3", "--camera", file)
     assert run.returncode == 0, run.stderr
