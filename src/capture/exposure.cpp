@@ -2,11 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace bole {
 
+int ExposureRange::nearest(double exposure_us) const {
+  const int whole_steps = (max_us - min_us) / step_us;
+  const double steps = std::round((exposure_us - min_us) / step_us);
+  return min_us + step_us * static_cast<int>(std::clamp<double>(steps, 0, whole_steps));
+}
+
+ExposureRange ExposureRange::held_below(std::chrono::nanoseconds frame_period) const {
+  ExposureRange held = *this;
+  const std::int64_t period_us = frame_period.count() / 1000;
+  if (period_us > 0) {
+    held.max_us = static_cast<int>(std::clamp<std::int64_t>(period_us, min_us, max_us));
+  }
+  return held;
+}
+
 ExposureController::ExposureController(ExposureRange range, int start_us)
-    : range_(range), exposure_us_(std::clamp(start_us, range.min_us, range.max_us)) {}
+    : range_(range), exposure_us_(range.nearest(start_us)) {}
 
 std::optional<int> ExposureController::update(double mean) {
   if (settling_ > 0) {
@@ -18,11 +34,11 @@ std::optional<int> ExposureController::update(double mean) {
   // Proportional on a linear sensor; a camera's gamma makes the true response flatter, so that
   // this falls short of the target rather than swinging beyond it.
   const double wanted = exposure_us_ * std::clamp(ratio, 1 / kLargestStep, kLargestStep);
-  const double chosen = std::clamp<double>(wanted, range_.min_us, range_.max_us);
+  const int chosen = range_.nearest(wanted);
   if (chosen == exposure_us_) return std::nullopt;
   exposure_us_ = chosen;
   settling_ = kFramesToSettle;
-  return static_cast<int>(std::lround(chosen));
+  return chosen;
 }
 
 }  // namespace bole

@@ -1,13 +1,20 @@
 #pragma once
 
+#include <chrono>
 #include <optional>
 
 namespace bole {
 
-/// Exposure times that a camera can, in microseconds.
+/// Exposure times that a camera can, in microseconds: from the shortest in whole steps.
 struct ExposureRange {
-  int min_us = 0;
-  int max_us = 0;
+  int min_us = 1;
+  int max_us = 1;
+  int step_us = 1;
+
+  /// The one of them that lies nearest to `exposure_us`.
+  int nearest(double exposure_us) const;
+  /// Those no longer than a frame takes, beyond which a camera would give fewer frames. 0: unknown.
+  ExposureRange held_below(std::chrono::nanoseconds frame_period) const;
 };
 
 /// Chooses exposure times so that the panorama, not sky or chassis, is well exposed. A change shows
@@ -17,7 +24,8 @@ class ExposureController {
   ExposureController(ExposureRange range, int start_us);
 
   /// `mean`: of the panorama's seen pixels, 0 to 255, once a frame. The exposure time to set, or
-  /// nullopt to leave it: within a tenth of the target, or while the last change is on its way.
+  /// nullopt to leave it: within a tenth of the target, where the camera has none that comes nearer
+  /// to it, or while the last change is on its way.
   std::optional<int> update(double mean);
 
   static constexpr double kTarget = 110;  ///< mean to aim at: dark trunks keep their contrast
@@ -27,7 +35,7 @@ class ExposureController {
 
  private:
   ExposureRange range_;
-  double exposure_us_;
+  int exposure_us_;  // as the camera has it
   int settling_ = 0;
 };
 

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <cstdlib>
+#include <utility>
 
 namespace bole {
 namespace {
@@ -42,6 +43,8 @@ class Writer {
   // Sets a control that only some cameras have and that nobody asked for by name.
   void set_quietly(std::uint32_t id, int value) { write_control(device_, id, value); }
 
+  void tell(std::string line) { refused_.push_back(std::move(line)); }
+
   std::vector<std::string> refused() && { return std::move(refused_); }
 
  private:
@@ -57,7 +60,8 @@ class Writer {
   std::vector<std::string> refused_;
 };
 
-void set_exposure_mode(Writer& writer, const CameraSettings& settings) {
+void set_exposure_mode(Writer& writer, const CameraSettings& settings,
+                       const std::optional<ExposureRange>& range) {
   using Exposure = CameraSettings::Exposure;
   if (settings.exposure == Exposure::automatic) {
     writer.set("exposure = \"automatic\"", V4L2_CID_EXPOSURE_AUTO,
@@ -65,8 +69,13 @@ void set_exposure_mode(Writer& writer, const CameraSettings& settings) {
   } else if (settings.exposure != Exposure::unchanged) {
     writer.set("exposure = \"fixed\"", V4L2_CID_EXPOSURE_AUTO,
                {V4L2_EXPOSURE_MANUAL, V4L2_EXPOSURE_SHUTTER_PRIORITY});
-    writer.set("exposure_us = " + std::to_string(settings.exposure_us), V4L2_CID_EXPOSURE_ABSOLUTE,
-               {std::max(settings.exposure_us / kExposureUnitUs, 1)});
+    const std::string what = "exposure_us = " + std::to_string(settings.exposure_us);
+    const int nearest_us = range ? range->nearest(settings.exposure_us) : settings.exposure_us;
+    writer.set(what, V4L2_CID_EXPOSURE_ABSOLUTE, {std::max(nearest_us / kExposureUnitUs, 1)});
+    // Within a step it is what was asked for.
+    if (range && std::abs(nearest_us - settings.exposure_us) >= range->step_us) {
+      writer.tell(what + ": the camera's nearest is " + std::to_string(nearest_us));
+    }
   }
 }
 
@@ -107,7 +116,7 @@ void set_power_line(Writer& writer, CameraSettings::PowerLine wanted) {
 
 std::vector<std::string> apply_controls(const V4l2Device& device, const CameraSettings& settings) {
   Writer writer(device);
-  set_exposure_mode(writer, settings);
+  set_exposure_mode(writer, settings, exposure_range(device));
   if (settings.gain) {
     writer.set_quietly(V4L2_CID_AUTOGAIN, 0);
     const int gain = static_cast<int>(std::lround(*settings.gain));
@@ -119,17 +128,18 @@ std::vector<std::string> apply_controls(const V4l2Device& device, const CameraSe
 }
 
 bool set_exposure(const V4l2Device& device, int exposure_us) {
-  return write_control(device, V4L2_CID_EXPOSURE_ABSOLUTE,
-                       std::max(exposure_us / kExposureUnitUs, 1)) == 0;
+  return write_control(device, V4L2_CID_EXPOSURE_ABSOLUTE, exposure_us / kExposureUnitUs) == 0;
 }
 
-ExposureRange exposure_range(const V4l2Device& device) {
+std::optional<ExposureRange> exposure_range(const V4l2Device& device) {
   v4l2_queryctrl query{};
   query.id = V4L2_CID_EXPOSURE_ABSOLUTE;
-  if (device.call(VIDIOC_QUERYCTRL, &query) != 0) return {};
+  if (device.call(VIDIOC_QUERYCTRL, &query) != 0) return std::nullopt;
   constexpr int kLongest = 10'000'000 / kExposureUnitUs;
-  return {std::clamp(query.minimum, 1, kLongest) * kExposureUnitUs,
-          std::clamp(query.maximum, 1, kLongest) * kExposureUnitUs};
+  const int min = std::clamp(query.minimum, 1, kLongest);
+  const int max = std::clamp(query.maximum, min, kLongest);
+  const int step = std::clamp(query.step, 1, kLongest);
+  return ExposureRange{min * kExposureUnitUs, max * kExposureUnitUs, step * kExposureUnitUs};
 }
 
 }  // namespace bole

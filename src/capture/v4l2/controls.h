@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,10 +14,10 @@ namespace bole {
 /// Returns a line for each that the camera refused or changed: "gain = 300: the camera has 255".
 std::vector<std::string> apply_controls(const V4l2Device& device, const CameraSettings& settings);
 
-/// Sets the exposure time, clamped to what the camera can. False when it refuses.
+/// Sets an exposure time, one of the camera's exposure_range(). False when it refuses.
 bool set_exposure(const V4l2Device& device, int exposure_us);
 
-/// The exposure times that the camera can, in microseconds; {0, 0} when it does not say.
-ExposureRange exposure_range(const V4l2Device& device);
+/// The exposure times that the camera can; nullopt when it does not say.
+std::optional<ExposureRange> exposure_range(const V4l2Device& device);
 
 }  // namespace bole

@@ -77,14 +77,9 @@ void V4l2Source::start() {
   const v4l2_capability capability = device.capability();
   format_ = negotiate_format(device, settings_);
   refused_ = apply_controls(device, settings_);
-  const ExposureRange range = exposure_range(device);
-  if (settings_.exposure == CameraSettings::Exposure::metered && range.max_us > 0) {
-    // An exposure longer than a frame would cost frames.
-    const auto period_us = static_cast<int>(format_.period.count() / 1000);
-    exposure_.emplace(
-        ExposureRange{range.min_us,
-                      period_us > range.min_us ? std::min(range.max_us, period_us) : range.max_us},
-        settings_.exposure_us);
+  const std::optional<ExposureRange> range = exposure_range(device);
+  if (settings_.exposure == CameraSettings::Exposure::metered && range) {
+    exposure_.emplace(range->held_below(format_.period), settings_.exposure_us);
   }
   mean_ = kNotMetered;
   sequence_ = {};
