@@ -8,6 +8,8 @@
 namespace bole {
 namespace {
 
+const std::string kFirstFrame = "waiting for the first frame";
+
 std::string seconds(std::int64_t ns) {
   const std::int64_t tenths = (ns + 50'000'000) / 100'000'000;
   return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " s";
@@ -62,9 +64,12 @@ Grab Supervisor::open_or_wait() {
 }
 
 void Supervisor::open() {
+  // May take seconds. Later on it is told why there is no camera, until there is one.
+  if (state_ == CameraState::starting) enter(CameraState::opening, kFirstFrame);
   try {
     source_.open();
   } catch (const std::runtime_error& error) {  // the camera's refusal, or the system's
+    if (interrupted_.wait(0)) return;          // which next() tells
     ++counts_.failed_opens;
     wait_for_camera(error.what());
     return;
@@ -76,7 +81,7 @@ void Supervisor::open() {
   last_frame_ns_ = clock_.mono_ns();
   counts_.settings_refused += std::ssize(source_.refused());
   // A stalled camera that was restarted stays stalled until a frame comes.
-  if (state_ != CameraState::stalled) enter(CameraState::opening, "waiting for the first frame");
+  if (state_ != CameraState::stalled) enter(CameraState::opening, kFirstFrame);
 }
 
 void Supervisor::wait_for_camera(const std::string& reason) {

@@ -17,7 +17,7 @@ namespace bole {
 /// How the camera is doing.
 enum class CameraState : std::uint8_t {
   starting,   ///< nothing tried yet
-  opening,    ///< opened; the first frame has not come yet
+  opening,    ///< being opened, or open: the first frame has not come yet
   streaming,  ///< frames arrive
   stalled,    ///< the camera is there, but frames have stopped
   no_camera,  ///< gone, or never there, or not as it must be; it is being waited for
@@ -69,7 +69,8 @@ class Supervisor {
   Supervisor(const Supervisor&) = delete;
   Supervisor& operator=(const Supervisor&) = delete;
 
-  /// Takes one step and returns after options.tick at the latest. The grab's kind is `frame`, `end`
+  /// Takes one step and returns after options.tick at the latest, or once the source was opened,
+  /// which tells of its own steps (FrameSource::on_step). The grab's kind is `frame`, `end`
   /// (replay only), `interrupted`, `bad_frame`, or `timeout`: nothing yet, call again; returning
   /// is progress enough for a watchdog, since the camera is then properly being waited for.
   Grab next();

@@ -166,10 +166,13 @@ void LibcameraSource::forget_unplugged() {
 
 void LibcameraSource::start() {
   if (usb_camera_is_missing(id_)) throw CaptureError(kNotThere);
+  step(interrupted_);
   manager_ = camera_manager();
   auto camera = manager_->get(id_);
   if (!camera) throw CaptureError(kNotThere);
+  step(interrupted_);
   Acquired acquired(std::move(camera));
+  step(interrupted_);
   const Agreed agreed = configure(*acquired, settings_);
   refused_.clear();
   const libcamera::ControlList controls = make_controls(*acquired, settings_, refused_);
@@ -182,6 +185,7 @@ void LibcameraSource::start() {
   period_ = std::chrono::nanoseconds(0);
   last_stamp_ns_ = 0;
   const libcamera::StreamConfiguration& stream = agreed.configuration->at(0);
+  step(interrupted_);
   session_ =
       std::make_shared<LibcameraSession>(acquired.take(), stream.stream(), agreed.layout, controls);
   description_ = id_ + " (" + libcamera_version() + "), " + stream.toString() + ", " +

@@ -12,12 +12,12 @@ constexpr int kExposureUnitUs = 100;  // of V4L2_CID_EXPOSURE_ABSOLUTE
 
 int write_control(const V4l2Device& device, std::uint32_t id, int value) {
   v4l2_control control{id, value};
-  return device.call(VIDIOC_S_CTRL, &control);
+  return device.ask(VIDIOC_S_CTRL, &control);
 }
 
 std::optional<int> read_control(const V4l2Device& device, std::uint32_t id) {
   v4l2_control control{id, 0};
-  if (device.call(VIDIOC_G_CTRL, &control) != 0) return std::nullopt;
+  if (device.ask(VIDIOC_G_CTRL, &control) != 0) return std::nullopt;
   return control.value;
 }
 
@@ -128,13 +128,14 @@ std::vector<std::string> apply_controls(const V4l2Device& device, const CameraSe
 }
 
 bool set_exposure(const V4l2Device& device, int exposure_us) {
-  return write_control(device, V4L2_CID_EXPOSURE_ABSOLUTE, exposure_us / kExposureUnitUs) == 0;
+  v4l2_control control{V4L2_CID_EXPOSURE_ABSOLUTE, exposure_us / kExposureUnitUs};
+  return device.call(VIDIOC_S_CTRL, &control) == 0;
 }
 
 std::optional<ExposureRange> exposure_range(const V4l2Device& device) {
   v4l2_queryctrl query{};
   query.id = V4L2_CID_EXPOSURE_ABSOLUTE;
-  if (device.call(VIDIOC_QUERYCTRL, &query) != 0) return std::nullopt;
+  if (device.ask(VIDIOC_QUERYCTRL, &query) != 0) return std::nullopt;
   constexpr int kLongest = 10'000'000 / kExposureUnitUs;
   const int min = std::clamp(query.minimum, 1, kLongest);
   const int max = std::clamp(query.maximum, min, kLongest);

@@ -53,8 +53,9 @@ bool is_first_node(const fs::path& node) {
 
 }  // namespace
 
-V4l2Device::V4l2Device(const fs::path& path)
-    : fd_(::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC)) {
+V4l2Device::V4l2Device(const fs::path& path, std::function<void()> before_asking)
+    : fd_(::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC)),
+      before_asking_(std::move(before_asking)) {
   if (fd_) return;
   const int error = errno;
   std::string hint;
@@ -70,9 +71,16 @@ int V4l2Device::call(unsigned long request, void* argument) const noexcept {
   return result < 0 ? errno : 0;
 }
 
+int V4l2Device::ask(unsigned long request, void* argument) const {
+  if (before_asking_) before_asking_();
+  const int error = call(request, argument);
+  if (error == ETIMEDOUT) throw CaptureError("does not answer");
+  return error;
+}
+
 v4l2_capability V4l2Device::capability() const {
   v4l2_capability capability{};
-  const int error = call(VIDIOC_QUERYCAP, &capability);
+  const int error = ask(VIDIOC_QUERYCAP, &capability);
   if (error != 0) throw CaptureError("is no Video4Linux device: " + error_text(error));
   return capability;
 }

@@ -73,7 +73,7 @@ void V4l2Source::open() {
 }
 
 void V4l2Source::start() {
-  V4l2Device device(find_v4l2_device(name_));
+  V4l2Device device(find_v4l2_device(name_), [this] { step(interrupted_); });
   const v4l2_capability capability = device.capability();
   format_ = negotiate_format(device, settings_);
   refused_ = apply_controls(device, settings_);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <deque>
+#include <functional>
 #include <thread>
 #include <vector>
 
@@ -24,6 +25,11 @@ class ScriptedCamera : public FrameSource {
   explicit ScriptedCamera(ReplayClock& clock) : clock_(clock) {}
 
   void open() override {
+    for (int i = 0; i < steps; ++i) {
+      clock_.advance_to(clock_.mono_ns() + 2000 * kMs);
+      if (at_step) at_step(i);
+      step(interrupted);
+    }
     ++opened;
     opened_at_ms.push_back(clock_.mono_ns() / kMs);
     if (!absent.empty()) throw CaptureError(absent);
@@ -45,7 +51,7 @@ class ScriptedCamera : public FrameSource {
     is_open = false;
     ++closed;
   }
-  void interrupt() noexcept override {}
+  void interrupt() noexcept override { interrupted.raise(); }
   std::chrono::nanoseconds frame_period() const override { return period; }
   std::string description() const override { return "scripted camera"; }
 
@@ -75,6 +81,9 @@ class ScriptedCamera : public FrameSource {
   int opened = 0;
   int closed = 0;
   std::vector<std::int64_t> opened_at_ms;
+  int steps = 0;  // of open(), two seconds each
+  std::function<void(int step)> at_step;
+  Wakeup interrupted;
 
  private:
   ReplayClock& clock_;
@@ -117,10 +126,36 @@ TEST_F(SupervisorTest, TellsOpeningAndStreamingOnce) {
   EXPECT_EQ(supervisor.counts().frames, 3);
 }
 
+TEST_F(SupervisorTest, ASlowCameraIsToldToBeOpeningAndTellsOfEachStep) {
+  camera.steps = 5;
+  int told_of = 0;
+  camera.on_step([&] { ++told_of; });
+  camera.at_step = [&](int step) {
+    EXPECT_EQ(supervisor.state(), CameraState::opening);
+    EXPECT_EQ(told_of, step);
+  };
+  supervisor.next();
+  EXPECT_EQ(told_of, 5);
+  EXPECT_TRUE(camera.is_open);
+}
+
+TEST_F(SupervisorTest, AnInterruptionEndsASlowOpeningAndIsNoFailure) {
+  camera.steps = 5;
+  camera.at_step = [&](int step) {
+    if (step == 2) supervisor.interrupt();
+  };
+  EXPECT_EQ(supervisor.next().kind, Grab::Kind::timeout);
+  EXPECT_EQ(clock.mono_ns(), 3 * 2000 * kMs);
+  EXPECT_EQ(supervisor.next().kind, Grab::Kind::interrupted);
+  EXPECT_EQ(supervisor.counts().failed_opens, 0);
+  EXPECT_THAT(told(), ElementsAre("opening: waiting for the first frame"));
+}
+
 TEST_F(SupervisorTest, WaitsForACameraThatIsNotThereYet) {
   camera.absent = "/dev/v4l/by-id/x is not there";
   run_until(5000);
-  EXPECT_THAT(told(), ElementsAre("no camera: /dev/v4l/by-id/x is not there"));
+  EXPECT_THAT(told(), ElementsAre("opening: waiting for the first frame",
+                                  "no camera: /dev/v4l/by-id/x is not there"));
   EXPECT_EQ(supervisor.counts().failed_opens, camera.opened);
   for (std::size_t i = 1; i < camera.opened_at_ms.size(); ++i) {
     EXPECT_LE(camera.opened_at_ms[i] - camera.opened_at_ms[i - 1], 200) << "the back-off is capped";
@@ -139,11 +174,11 @@ TEST_F(SupervisorTest, TellsEachReasonOfAnOutageOnce) {
     camera.absent = "permission denied";
     run_until(1000 * (2 * i + 2));
   }
-  EXPECT_THAT(
-      told(),
-      ElementsAre("no camera: is not there", "no camera: permission denied",
-                  "no camera: is not there (again)", "no camera: permission denied (again)",
-                  "no camera: is not there (again)", "no camera: permission denied (again)"));
+  EXPECT_THAT(told(),
+              ElementsAre("opening: waiting for the first frame", "no camera: is not there",
+                          "no camera: permission denied", "no camera: is not there (again)",
+                          "no camera: permission denied (again)", "no camera: is not there (again)",
+                          "no camera: permission denied (again)"));
 }
 
 TEST_F(SupervisorTest, AnUnpluggedCameraIsClosedToldAtOnceAndOpenedAgain) {

@@ -7,6 +7,7 @@
 
 #include "capture/buffer_layout.h"
 #include "capture/sequence_count.h"
+#include "capture/v4l2/controls.h"
 #include "capture/v4l2/format.h"
 #include "capture/v4l2/stamp.h"
 #include "capture/v4l2/v4l2_source.h"
@@ -164,6 +165,20 @@ TEST(V4l2Source, TellsWhyACameraCannotBeOpened) {
   EXPECT_EQ(why_it_does_not_open("no-such-serial"), "is not there (no-such-serial)");
   EXPECT_THAT(why_it_does_not_open("/dev/null"), HasSubstr("is no Video4Linux device"));
   EXPECT_EQ(why_it_does_not_open(""), "is not there ()");
+}
+
+// /dev/null opens, but has no settings.
+TEST(V4l2Device, TellsBeforeEachQuestionAndCanBeStoppedThere) {
+  int questions = 0;
+  const V4l2Device device("/dev/null", [&] {
+    if (++questions == 3) throw CaptureError("interrupted");
+  });
+  CameraSettings settings;
+  settings.exposure = CameraSettings::Exposure::automatic;
+  settings.power_line = CameraSettings::PowerLine::off;
+  settings.white_balance = CameraSettings::WhiteBalance::automatic;
+  EXPECT_THROW(apply_controls(device, settings), CaptureError);
+  EXPECT_EQ(questions, 3);
 }
 
 }  // namespace
