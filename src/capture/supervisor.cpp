@@ -10,6 +10,12 @@ namespace {
 
 const std::string kFirstFrame = "waiting for the first frame";
 
+// The first time, the 10th, the 100th ...: what happens without end is told ever more seldom.
+bool is_told(std::int64_t times) {
+  while (times % 10 == 0) times /= 10;
+  return times == 1;
+}
+
 std::string seconds(std::int64_t ns) {
   const std::int64_t tenths = (ns + 50'000'000) / 100'000'000;
   return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " s";
@@ -95,7 +101,11 @@ Grab Supervisor::stream() {
   account(grab);
   switch (grab.kind) {
     case Grab::Kind::frame:
-      streaming();
+      if (const std::string reason = unusable(); reason.empty()) {
+        streaming();
+      } else {
+        check_stall(reason);
+      }
       break;
     case Grab::Kind::bad_frame:
     case Grab::Kind::timeout:
@@ -133,11 +143,33 @@ void Supervisor::account(const Grab& grab) {
 void Supervisor::streaming() {
   got_frame_ = true;
   last_frame_ns_ = clock_.mono_ns();
-  if (state_ == CameraState::streaming) return;
-  enter(CameraState::streaming, source_.description());
+  if (state_ != CameraState::streaming) {
+    streaming_since_ns_ = last_frame_ns_;
+    enter(CameraState::streaming, source_.description());
+  } else if (!told_.empty() && last_frame_ns_ - streaming_since_ns_ >= options_.settle.count()) {
+    settle();
+  }
+}
+
+// The outage is over. A camera that comes and goes with every other frame is still in the same one.
+void Supervisor::settle() {
+  const std::int64_t times = told_[{state_, reason_}];
+  if (!is_told(times)) on_event_({state_, reason_, false, times});
   told_.clear();
   reopen_wait_ns_ = options_.reopen_min.count();
   restart_wait_ns_ = options_.restart_min.count();
+}
+
+void Supervisor::judged(std::string_view unusable) {
+  const std::lock_guard lock(judged_mutex_);
+  unusable_in_a_row_ = unusable.empty() ? 0 : unusable_in_a_row_ + 1;
+  unusable_ = unusable;
+}
+
+// Why frames are of no use of late; empty when they are of use.
+std::string Supervisor::unusable() const {
+  const std::lock_guard lock(judged_mutex_);
+  return unusable_in_a_row_ < options_.unusable_frames ? "" : unusable_;
 }
 
 std::int64_t Supervisor::stall_after_ns() const {
@@ -175,8 +207,8 @@ void Supervisor::enter(CameraState state, const std::string& reason) {
   if (state == state_ && reason == reason_) return;
   state_ = state;
   reason_ = reason;
-  const bool repeated = !told_.insert({state, reason}).second;
-  on_event_({state, reason, repeated});
+  const std::int64_t times = ++told_[{state, reason}];
+  on_event_({state, reason, !is_told(times), times});
 }
 
 }  // namespace bole

@@ -106,8 +106,10 @@ void Pipeline::process() {
     processing_ = true;
     try {
       process(captured);
+      supervisor_.judged("");
     } catch (const std::exception& error) {
       telemetry_.unusable(captured.frame.file(), error.what());
+      supervisor_.judged(error.what());
     }
     captured = {};
     processing_ = false;

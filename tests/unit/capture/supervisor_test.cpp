@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <array>
 #include <deque>
 #include <functional>
@@ -108,6 +109,7 @@ class SupervisorTest : public testing::Test {
     return lines;
   }
 
+  std::int64_t seq = 0;
   ReplayClock clock;
   ScriptedCamera camera{clock};
   std::vector<CameraEvent> events;
@@ -191,8 +193,8 @@ TEST_F(SupervisorTest, AnUnpluggedCameraIsClosedToldAtOnceAndOpenedAgain) {
   run_script();
   EXPECT_THAT(told(),
               ElementsAre("opening: waiting for the first frame", "streaming: scripted camera",
-                          "no camera: unplugged", "opening: waiting for the first frame",
-                          "streaming: scripted camera"));
+                          "no camera: unplugged", "opening: waiting for the first frame (again)",
+                          "streaming: scripted camera (again)"));
   EXPECT_EQ(supervisor.counts().losses, 1);
   EXPECT_EQ(supervisor.counts().drops.total(), 0) << "a new count of the sensor is no gap";
 }
@@ -203,7 +205,61 @@ TEST_F(SupervisorTest, ACameraThatGoesAsSoonAsItIsOpenedIsTriedEverMoreSeldom) {
   run_script();
   EXPECT_GE(camera.opened_at_ms.back(), 17 * 200);
   EXPECT_FALSE(events.at(1).repeated);
-  for (std::size_t i = 2; i < events.size(); ++i) EXPECT_TRUE(events[i].repeated);
+  for (std::size_t i = 2; i < events.size(); ++i) {
+    EXPECT_EQ(events[i].repeated, events[i].times != 10) << i;
+  }
+}
+
+TEST_F(SupervisorTest, ACameraThatComesAndGoesIsToldEverMoreSeldomUntilItStreamsWell) {
+  const auto logged = [&] {
+    return std::ranges::count_if(events, [](const CameraEvent& event) { return !event.repeated; });
+  };
+  for (int i = 0; i < 200; ++i) {
+    camera.frames({0});
+    camera.other(Grab::Kind::lost, "unplugged");
+  }
+  run_script();
+  EXPECT_EQ(supervisor.counts().losses, 200);
+  EXPECT_EQ(logged(), 9) << "three states, each for the first, 10th and 100th time";
+
+  camera.frames({0});
+  run_script();
+  EXPECT_TRUE(events.back().repeated);
+  for (int i = 1; i <= 60; ++i) camera.frames({i});
+  run_script();
+  EXPECT_THAT(told().back(), "streaming: scripted camera") << "that it is over is told";
+  EXPECT_EQ(events.back().times, 201);
+
+  camera.other(Grab::Kind::lost, "unplugged");
+  run_script();
+  EXPECT_THAT(told().back(), "no camera: unplugged") << "a new outage";
+  EXPECT_EQ(events.back().times, 1);
+}
+
+TEST_F(SupervisorTest, FramesOfNoUseAreAStallUntilOneIsUsedAgain) {
+  const auto frames = [&](int count, const char* unusable) {
+    for (int i = 0; i < count; ++i) {
+      camera.frames({seq++});
+      supervisor.next();
+      supervisor.judged(unusable);
+    }
+  };
+  supervisor.next();
+  frames(3, "");
+  frames(4, "damaged JPEG");
+  frames(1, "");
+  EXPECT_EQ(supervisor.state(), CameraState::streaming) << "now and then one";
+  frames(15, "damaged JPEG");
+  EXPECT_THAT(told().back(), "stalled: no usable frame for 0.5 s: damaged JPEG");
+  frames(600, "damaged JPEG");
+  EXPECT_EQ(supervisor.state(), CameraState::stalled) << "also when restarted";
+  EXPECT_EQ(supervisor.counts().stalls, 1);
+  EXPECT_GE(supervisor.counts().restarts, 3);
+  EXPECT_LE(supervisor.counts().restarts, 6) << "it backs off";
+  EXPECT_EQ(events.size(), 3U);
+  frames(1, "");
+  frames(1, "");
+  EXPECT_EQ(supervisor.state(), CameraState::streaming);
 }
 
 TEST_F(SupervisorTest, StallsAreJudgedByTheFrameRate) {
@@ -288,6 +344,25 @@ TEST_F(SupervisorTest, EachStepTakesATickAtMost) {
     supervisor.next();
     EXPECT_LE(clock.mono_ns() - before_ns, 100 * kMs);
   }
+}
+
+TEST(SupervisorThreads, FramesAreJudgedInAnotherThanTheyAreTakenIn) {
+  ReplayClock clock;
+  ScriptedCamera camera(clock);
+  Supervisor supervisor(camera, clock, [](const CameraEvent&) {});
+  std::thread other([&] {
+    for (int i = 0; i < 1000; ++i) supervisor.judged("damaged JPEG");
+  });
+  for (int i = 0; i < 1000; ++i) {
+    camera.frames({i});
+    supervisor.next();
+  }
+  other.join();
+  for (int i = 0; i < 20; ++i) {
+    camera.frames({i});
+    supervisor.next();
+  }
+  EXPECT_EQ(supervisor.state(), CameraState::stalled);
 }
 
 TEST(SupervisorInterrupt, EndsTheWaitForACamera) {
