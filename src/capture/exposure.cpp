@@ -30,7 +30,8 @@ std::optional<int> ExposureController::update(double mean) {
     return std::nullopt;
   }
   const double ratio = kTarget / std::max(mean, 1.0);
-  if (std::abs(ratio - 1) <= kTolerance) return std::nullopt;
+  const bool possible = exposure_us_ <= range_.max_us;
+  if (possible && std::abs(ratio - 1) <= kTolerance) return std::nullopt;
   // Proportional on a linear sensor; a camera's gamma makes the true response flatter, so that
   // this falls short of the target rather than swinging beyond it.
   const double wanted = exposure_us_ * std::clamp(ratio, 1 / kLargestStep, kLargestStep);
@@ -39,6 +40,21 @@ std::optional<int> ExposureController::update(double mean) {
   exposure_us_ = chosen;
   settling_ = kFramesToSettle;
   return chosen;
+}
+
+std::string Metering::start(const CameraSettings& settings, std::optional<ExposureRange> range) {
+  stop();
+  mean_ = kNone;
+  if (settings.exposure != CameraSettings::Exposure::metered) return "";
+  if (!range) return as_written(settings.exposure) + ": the camera names no exposure times";
+  controller_.emplace(*range, settings.exposure_us);
+  return "";
+}
+
+std::optional<int> Metering::due() {
+  const double mean = mean_.exchange(kNone);
+  if (!controller_ || mean == kNone) return std::nullopt;
+  return controller_->update(mean);
 }
 
 }  // namespace bole

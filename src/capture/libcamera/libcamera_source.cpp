@@ -20,7 +20,6 @@
 namespace bole {
 namespace {
 
-constexpr double kNotMetered = -1;
 constexpr std::chrono::seconds kLibcameraPatience{5};
 
 std::string shown(ImageSize size) {
@@ -119,13 +118,13 @@ class LibcameraSource final : public FrameSource {
       manager_.reset();
     }
     session_.reset();
-    exposure_.reset();
+    metering_.stop();
   }
   void interrupt() noexcept override { interrupted_.raise(); }
   std::chrono::nanoseconds frame_period() const override { return period_; }
   std::string description() const override { return description_; }
   std::vector<std::string> refused() const override { return refused_; }
-  void metered(double mean) noexcept override { mean_ = mean; }
+  void metered(double mean) noexcept override { metering_.tell(mean); }
 
  private:
   void forget_unplugged();
@@ -147,9 +146,11 @@ class LibcameraSource final : public FrameSource {
   std::shared_ptr<LibcameraSession> session_;
   std::shared_ptr<LibcameraSession> unplugged_;  // closed, but libcamera does not know yet
   SequenceCount sequence_;
-  std::optional<ExposureController> exposure_;
-  std::atomic<double> mean_ = kNotMetered;
+  Metering metering_;
+  bool metering_held_ = false;  // below the frame period
   std::chrono::nanoseconds period_{0};
+  std::int64_t first_stamp_ns_ = 0;
+  std::int64_t first_sequence_ = 0;
   std::int64_t last_stamp_ns_ = 0;
   std::int64_t last_sequence_ = 0;
   std::string description_;
@@ -176,11 +177,10 @@ void LibcameraSource::start() {
   const Agreed agreed = configure(*acquired, settings_);
   refused_.clear();
   const libcamera::ControlList controls = make_controls(*acquired, settings_, refused_);
-  const std::optional<ExposureRange> range = exposure_range(*acquired);
-  if (settings_.exposure == CameraSettings::Exposure::metered && range) {
-    exposure_.emplace(*range, settings_.exposure_us);
-  }
-  mean_ = kNotMetered;
+  std::string unmetered = metering_.start(settings_, exposure_range(*acquired));
+  if (!unmetered.empty()) refused_.push_back(std::move(unmetered));
+  metering_held_ = false;
+  first_stamp_ns_ = 0;
   sequence_ = {};
   period_ = std::chrono::nanoseconds(0);
   last_stamp_ns_ = 0;
@@ -192,13 +192,17 @@ void LibcameraSource::start() {
                  std::to_string(session_->count()) + " buffers";
 }
 
-// Sets the exposure that the last brightness told of calls for.
+// Sets the exposure that the last brightness told of calls for, once it is known how long a frame
+// takes: libcamera does not say, and a longer exposure would make it longer.
 void LibcameraSource::expose() {
-  const double mean = mean_.exchange(kNotMetered);
-  if (!exposure_ || mean == kNotMetered) return;
-  if (const std::optional<int> exposure_us = exposure_->update(mean)) {
-    session_->expose(*exposure_us);
+  constexpr std::int64_t kFramesToKnow = 10;
+  const std::int64_t frames = last_sequence_ - first_sequence_;
+  if (first_stamp_ns_ == 0 || frames < kFramesToKnow) return;
+  if (!metering_held_) {
+    metering_.hold_below(std::chrono::nanoseconds((last_stamp_ns_ - first_stamp_ns_) / frames));
   }
+  metering_held_ = true;
+  if (const std::optional<int> exposure_us = metering_.due()) session_->expose(*exposure_us);
 }
 
 void LibcameraSource::wait(std::int64_t timeout_ns) const {
@@ -253,6 +257,10 @@ void LibcameraSource::take(const LibcameraSession::Completed& completed, const I
   const std::int64_t sequence = sequence_.extend(completed.sequence);
   if (last_stamp_ns_ > 0 && sequence > last_sequence_ && stamp_ns > last_stamp_ns_) {
     period_ = std::chrono::nanoseconds((stamp_ns - last_stamp_ns_) / (sequence - last_sequence_));
+  }
+  if (first_stamp_ns_ == 0) {
+    first_stamp_ns_ = stamp_ns;
+    first_sequence_ = sequence;
   }
   last_stamp_ns_ = stamp_ns;
   last_sequence_ = sequence;

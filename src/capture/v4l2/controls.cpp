@@ -64,10 +64,10 @@ void set_exposure_mode(Writer& writer, const CameraSettings& settings,
                        const std::optional<ExposureRange>& range) {
   using Exposure = CameraSettings::Exposure;
   if (settings.exposure == Exposure::automatic) {
-    writer.set("exposure = \"automatic\"", V4L2_CID_EXPOSURE_AUTO,
+    writer.set(as_written(settings.exposure), V4L2_CID_EXPOSURE_AUTO,
                {V4L2_EXPOSURE_AUTO, V4L2_EXPOSURE_APERTURE_PRIORITY});
   } else if (settings.exposure != Exposure::unchanged) {
-    writer.set("exposure = \"fixed\"", V4L2_CID_EXPOSURE_AUTO,
+    writer.set(as_written(settings.exposure), V4L2_CID_EXPOSURE_AUTO,
                {V4L2_EXPOSURE_MANUAL, V4L2_EXPOSURE_SHUTTER_PRIORITY});
     const std::string what = "exposure_us = " + std::to_string(settings.exposure_us);
     const int nearest_us = range ? range->nearest(settings.exposure_us) : settings.exposure_us;
@@ -83,7 +83,7 @@ void set_white_balance(Writer& writer, const CameraSettings& settings) {
   using WhiteBalance = CameraSettings::WhiteBalance;
   if (settings.white_balance == WhiteBalance::unchanged) return;
   const bool automatic = settings.white_balance == WhiteBalance::automatic;
-  writer.set("white_balance", V4L2_CID_AUTO_WHITE_BALANCE, {automatic ? 1 : 0});
+  writer.set(as_written(settings.white_balance), V4L2_CID_AUTO_WHITE_BALANCE, {automatic ? 1 : 0});
   if (automatic) return;
   writer.set("white_balance_k = " + std::to_string(settings.white_balance_k),
              V4L2_CID_WHITE_BALANCE_TEMPERATURE, {settings.white_balance_k});
@@ -92,7 +92,7 @@ void set_white_balance(Writer& writer, const CameraSettings& settings) {
 void set_power_line(Writer& writer, CameraSettings::PowerLine wanted) {
   using PowerLine = CameraSettings::PowerLine;
   const auto set = [&](int value) {
-    writer.set("power_line", V4L2_CID_POWER_LINE_FREQUENCY, {value});
+    writer.set(as_written(wanted), V4L2_CID_POWER_LINE_FREQUENCY, {value});
   };
   switch (wanted) {
     case PowerLine::unchanged:

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <cmath>
 #include <utility>
@@ -17,8 +16,6 @@
 
 namespace bole {
 namespace {
-
-constexpr double kNotMetered = -1;
 
 class V4l2Source final : public FrameSource {
  public:
@@ -33,18 +30,17 @@ class V4l2Source final : public FrameSource {
   void close() noexcept override {
     if (buffers_) buffers_->stop();
     buffers_.reset();
-    exposure_.reset();
+    metering_.stop();
   }
   void interrupt() noexcept override { interrupted_.raise(); }
   std::chrono::nanoseconds frame_period() const override { return format_.period; }
   std::string description() const override { return description_; }
   std::vector<std::string> refused() const override { return refused_; }
-  void metered(double mean) noexcept override { mean_ = mean; }
+  void metered(double mean) noexcept override { metering_.tell(mean); }
 
  private:
   void start();
   void describe(const v4l2_capability& capability);
-  void expose();
   short wait(std::int64_t timeout_ns) const;
   void drain(Grab& grab);
   void take(const v4l2_buffer& buffer, const ImageView& image, Grab& grab);
@@ -58,8 +54,7 @@ class V4l2Source final : public FrameSource {
   V4l2Format format_;
   std::shared_ptr<V4l2Buffers> buffers_;
   SequenceCount sequence_;
-  std::optional<ExposureController> exposure_;
-  std::atomic<double> mean_ = kNotMetered;
+  Metering metering_;
   std::string description_;
   std::vector<std::string> refused_;
 };
@@ -77,11 +72,9 @@ void V4l2Source::start() {
   const v4l2_capability capability = device.capability();
   format_ = negotiate_format(device, settings_);
   refused_ = apply_controls(device, settings_);
-  const std::optional<ExposureRange> range = exposure_range(device);
-  if (settings_.exposure == CameraSettings::Exposure::metered && range) {
-    exposure_.emplace(range->held_below(format_.period), settings_.exposure_us);
-  }
-  mean_ = kNotMetered;
+  std::string unmetered = metering_.start(settings_, exposure_range(device));
+  if (!unmetered.empty()) refused_.push_back(std::move(unmetered));
+  metering_.hold_below(format_.period);
   sequence_ = {};
   buffers_ = std::make_shared<V4l2Buffers>(std::move(device), format_, settings_.buffers);
   describe(capability);
@@ -102,14 +95,6 @@ void V4l2Source::describe(const v4l2_capability& capability) {
                  std::to_string(buffers_->count()) + " buffers";
 }
 
-// Sets the exposure that the last brightness told of calls for.
-void V4l2Source::expose() {
-  const double mean = mean_.exchange(kNotMetered);
-  if (!exposure_ || mean == kNotMetered) return;
-  const std::optional<int> exposure_us = exposure_->update(mean);
-  if (exposure_us) set_exposure(buffers_->device(), *exposure_us);
-}
-
 // What poll() tells of the camera; POLLNVAL stands for an interruption, 0 for a timeout.
 short V4l2Source::wait(std::int64_t timeout_ns) const {
   constexpr std::int64_t kSecond = 1'000'000'000;
@@ -122,7 +107,9 @@ short V4l2Source::wait(std::int64_t timeout_ns) const {
 }
 
 Grab V4l2Source::grab(std::chrono::nanoseconds timeout) {
-  expose();
+  if (const std::optional<int> exposure_us = metering_.due()) {
+    set_exposure(buffers_->device(), *exposure_us);
+  }
   const std::int64_t deadline_ns = clock_.mono_ns() + timeout.count();
   Grab grab;
   do {

@@ -122,5 +122,42 @@ TEST(Exposure, IsNoLongerThanAFrame) {
   EXPECT_EQ(kRange.held_below(std::chrono::microseconds(50)).nearest(1e9), 100);
 }
 
+TEST(Metering, LeavesAnExposureThatIsLongerThanAFrameThoughItIsRight) {
+  CameraSettings settings;
+  settings.exposure = CameraSettings::Exposure::metered;
+  settings.exposure_us = 50'000;
+  Metering metering;
+  EXPECT_EQ(metering.start(settings, ExposureRange{100, 200'000, 100}), "");
+  metering.tell(ExposureController::kTarget);
+  EXPECT_EQ(metering.due(), std::nullopt);
+  metering.hold_below(std::chrono::milliseconds(33));
+  metering.tell(ExposureController::kTarget);
+  EXPECT_EQ(metering.due(), 33'000);
+}
+
+TEST(Metering, CountsEachBrightnessOnceAndNoneOfTheOpeningBefore) {
+  CameraSettings settings;
+  settings.exposure = CameraSettings::Exposure::metered;
+  Metering metering;
+  metering.start(settings, ExposureRange{100, 200'000, 100});
+  metering.tell(10);
+  metering.start(settings, ExposureRange{100, 200'000, 100});
+  EXPECT_EQ(metering.due(), std::nullopt);
+  metering.tell(10);
+  EXPECT_TRUE(metering.due());
+  EXPECT_EQ(metering.due(), std::nullopt);
+}
+
+TEST(Metering, TellsWhenItCannotBeDone) {
+  CameraSettings settings;
+  Metering metering;
+  EXPECT_EQ(metering.start(settings, std::nullopt), "") << "nobody asked for it";
+  settings.exposure = CameraSettings::Exposure::metered;
+  EXPECT_EQ(metering.start(settings, std::nullopt),
+            "exposure = \"metered\": the camera names no exposure times");
+  metering.tell(10);
+  EXPECT_EQ(metering.due(), std::nullopt);
+}
+
 }  // namespace
 }  // namespace bole

@@ -16,7 +16,9 @@
 namespace bole {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr std::int64_t kMonoNow = 5'000 * kSecond;
@@ -179,6 +181,19 @@ TEST(V4l2Device, TellsBeforeEachQuestionAndCanBeStoppedThere) {
   settings.white_balance = CameraSettings::WhiteBalance::automatic;
   EXPECT_THROW(apply_controls(device, settings), CaptureError);
   EXPECT_EQ(questions, 3);
+}
+
+TEST(V4l2Controls, ThatAreRefusedAreToldAsTheyWereAskedFor) {
+  const V4l2Device device("/dev/null");
+  CameraSettings settings;
+  settings.exposure = CameraSettings::Exposure::metered;
+  settings.white_balance = CameraSettings::WhiteBalance::automatic;
+  settings.power_line = CameraSettings::PowerLine::hz50;
+  EXPECT_THAT(
+      apply_controls(device, settings),
+      ElementsAre(StartsWith("exposure = \"metered\": "), StartsWith("exposure_us = 10000: "),
+                  StartsWith("white_balance = \"automatic\": "),
+                  StartsWith("power_line = \"50 Hz\": ")));
 }
 
 }  // namespace
