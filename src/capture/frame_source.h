@@ -39,6 +39,13 @@ struct Grab {
   DropCounts drops;          ///< frames that came before this one and were not used
   int stamps_corrected = 0;  ///< stamps that lay in the future and were set to now
   std::string reason;        ///< of the last bad frame, or of the loss; else empty
+
+  /// A good frame has come: the newest wins, the one before goes back.
+  void take(Frame newest, bool stamp_corrected);
+  /// One has come that cannot be used.
+  void refuse(DropCause cause, std::string why);
+  /// The camera is gone, and what else was fetched of it is of no interest.
+  void lose(std::string why);
 };
 
 /// A camera, or files in place of one. One thread uses it; interrupt() may come from any.

@@ -8,18 +8,12 @@
 #include <array>
 #include <cerrno>
 #include <climits>
-#include <system_error>
 
 #include "base/errors.h"
 #include "publish/decoder.h"
 #include "publish/json_line.h"
 
 namespace bole {
-namespace {
-
-std::string reason(int error) { return std::generic_category().message(error); }
-
-}  // namespace
 
 JsonlPublisher::JsonlPublisher(const std::filesystem::path& target)
     : fd_(target == "-" ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)
@@ -27,7 +21,8 @@ JsonlPublisher::JsonlPublisher(const std::filesystem::path& target)
                         : ::open(target.c_str(),
                                  O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0644)) {
   if (!fd_) {
-    throw ConfigError("publish", "jsonl:" + target.string(), "cannot be written: " + reason(errno),
+    throw ConfigError("publish", "jsonl:" + target.string(),
+                      "cannot be written: " + error_text(errno),
                       "give a path that may be written to, or - for standard output");
   }
 }
@@ -50,7 +45,7 @@ void JsonlPublisher::write_all(std::string_view text) {
     const ssize_t written =
         ::write(fd_.get(), text.data(), std::min<std::size_t>(text.size(), PIPE_BUF));
     if (written < 0 && errno != EINTR && errno != EAGAIN) {
-      throw BusError("cannot be written: " + reason(errno));
+      throw BusError("cannot be written: " + error_text(errno));
     }
     if (written <= 0) continue;
     text.remove_prefix(static_cast<std::size_t>(written));

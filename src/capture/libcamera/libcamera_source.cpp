@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
+#include "base/errors.h"
 #include "capture/libcamera/formats.h"
 #include "capture/libcamera/libcamera.h"
 #include "capture/libcamera/manager.h"
@@ -22,10 +22,6 @@ namespace {
 
 constexpr std::chrono::seconds kLibcameraPatience{5};
 
-std::string shown(ImageSize size) {
-  return std::to_string(size.width) + " x " + std::to_string(size.height);
-}
-
 libcamera::Size theirs(ImageSize size) {
   return {static_cast<unsigned>(size.width), static_cast<unsigned>(size.height)};
 }
@@ -36,7 +32,7 @@ class Acquired {
   explicit Acquired(std::shared_ptr<libcamera::Camera> camera) : camera_(std::move(camera)) {
     const int error = camera_->acquire();
     if (error == -EBUSY) throw CaptureError("is in use by another program");
-    if (error != 0) throw CaptureError(std::string("cannot be had: ") + std::strerror(-error));
+    if (error != 0) throw CaptureError("cannot be had: " + error_text(-error));
   }
   Acquired(const Acquired&) = delete;
   Acquired& operator=(const Acquired&) = delete;
@@ -74,7 +70,7 @@ Agreed configure(libcamera::Camera& camera, const CameraSettings& settings) {
       continue;
     }
     if (const int error = camera.configure(agreed.configuration.get()); error != 0) {
-      throw CaptureError(std::string("takes no configuration: ") + std::strerror(-error));
+      throw CaptureError("takes no configuration: " + error_text(-error));
     }
     const auto stride = static_cast<int>(stream.stride);
     agreed.layout.pixels = format.ours;
@@ -243,10 +239,7 @@ void LibcameraSource::drain(Grab& grab) {
       refuse(completed, DropCause::too_short, "a frame was shorter than its format", grab);
     }
   }
-  if (!session_->gone()) return;
-  grab.frame = Frame();
-  grab.kind = Grab::Kind::lost;
-  grab.reason = kNotThere + in_brackets(id_);
+  if (session_->gone()) grab.lose(kNotThere + in_brackets(id_));
 }
 
 void LibcameraSource::take(const LibcameraSession::Completed& completed, const ImageView& image,
@@ -264,18 +257,14 @@ void LibcameraSource::take(const LibcameraSession::Completed& completed, const I
   }
   last_stamp_ns_ = stamp_ns;
   last_sequence_ = sequence;
-  if (grab.frame) ++grab.drops[DropCause::superseded];
-  grab.stamps_corrected += corrected ? 1 : 0;
-  grab.kind = Grab::Kind::frame;
-  grab.frame = Frame(image, {StampClock::monotonic, stamp_ns}, sequence, session_, completed.index);
+  grab.take(Frame(image, {StampClock::monotonic, stamp_ns}, sequence, session_, completed.index),
+            corrected);
 }
 
 void LibcameraSource::refuse(const LibcameraSession::Completed& completed, DropCause cause,
                              std::string reason, Grab& grab) {
   sequence_.extend(completed.sequence);
-  ++grab.drops[cause];
-  grab.reason = std::move(reason);
-  if (grab.kind == Grab::Kind::timeout) grab.kind = Grab::Kind::bad_frame;
+  grab.refuse(cause, std::move(reason));
   session_->give_back(completed.index);
 }
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+
 #include <utility>
+#include "base/errors.h"
 
 namespace bole {
 namespace {

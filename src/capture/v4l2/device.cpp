@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/errors.h"
 #include "capture/frame_source.h"
 
 namespace bole {
@@ -95,8 +96,6 @@ v4l2_buf_type V4l2Device::capture_type() const {
   }
   throw CaptureError("gives no stream of video frames");
 }
-
-std::string error_text(int error) { return std::generic_category().message(error); }
 
 fs::path find_v4l2_device(const std::string& name) {
   std::error_code error;

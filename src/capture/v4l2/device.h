@@ -39,9 +39,6 @@ class V4l2Device {
   std::function<void()> before_asking_;
 };
 
-/// errno in words.
-std::string error_text(int error);
-
 /// The node of the camera called `name`, resolved anew at each call: a path (best one below
 /// /dev/v4l/by-id or /dev/v4l/by-path, which stays the same over replugs), a name in one of these
 /// folders, or the serial number of a USB camera. Throws CaptureError when it is not there.

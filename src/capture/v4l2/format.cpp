@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/errors.h"
 #include "capture/frame_source.h"
 
 namespace bole {
@@ -33,10 +34,6 @@ constexpr std::array kKnownFormats = {
 };
 
 bool is_multiplanar(v4l2_buf_type type) { return type == V4L2_BUF_TYPE_VIDEO_CAPTURE_MPLANE; }
-
-std::string shown(ImageSize size) {
-  return std::to_string(size.width) + " x " + std::to_string(size.height);
-}
 
 v4l2_format wish(v4l2_buf_type type, std::uint32_t fourcc, ImageSize size) {
   v4l2_format format{};

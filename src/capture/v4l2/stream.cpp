@@ -6,6 +6,8 @@
 #include <cerrno>
 #include <utility>
 
+#include "base/errors.h"
+
 namespace bole {
 namespace {
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/errors.h"
 #include "base/wakeup.h"
 #include "capture/sequence_count.h"
 #include "capture/v4l2/controls.h"
@@ -90,9 +91,8 @@ void V4l2Source::describe(const v4l2_capability& capability) {
            " Hz";
   }
   description_ = name_ + " (" + text(capability.card) + ", " + text(capability.driver) + "), " +
-                 fourcc_text(format_.fourcc) + " " + std::to_string(format_.layout.size.width) +
-                 " x " + std::to_string(format_.layout.size.height) + " at " + rate + ", " +
-                 std::to_string(buffers_->count()) + " buffers";
+                 fourcc_text(format_.fourcc) + " " + shown(format_.layout.size) + " at " + rate +
+                 ", " + std::to_string(buffers_->count()) + " buffers";
 }
 
 // What poll() tells of the camera; POLLNVAL stands for an interruption, 0 for a timeout.
@@ -120,8 +120,7 @@ Grab V4l2Source::grab(std::chrono::nanoseconds timeout) {
     } else if (told != 0) {
       drain(grab);
       if (grab.kind == Grab::Kind::timeout && (told & (POLLERR | POLLHUP)) != 0) {
-        grab.kind = Grab::Kind::lost;
-        grab.reason = "reports an error" + in_brackets(name_);
+        grab.lose("reports an error" + in_brackets(name_));
       }
     }
   } while (grab.kind == Grab::Kind::timeout && clock_.mono_ns() < deadline_ns);
@@ -143,27 +142,20 @@ void V4l2Source::drain(Grab& grab) {
     }
   }
   if (error == EAGAIN) return;
-  // What else was fetched is of a camera that is gone.
-  grab.frame = Frame();
-  grab.kind = Grab::Kind::lost;
-  grab.reason = (error == ENODEV ? kNotThere : "failed: " + error_text(error)) + in_brackets(name_);
+  grab.lose((error == ENODEV ? kNotThere : "failed: " + error_text(error)) + in_brackets(name_));
 }
 
 void V4l2Source::take(const v4l2_buffer& buffer, const ImageView& image, Grab& grab) {
   const V4l2Stamp read = read_stamp(buffer, clock_.mono_ns(), clock_.utc_us() * 1000);
-  if (grab.frame) ++grab.drops[DropCause::superseded];
-  grab.stamps_corrected += read.corrected ? 1 : 0;
-  grab.kind = Grab::Kind::frame;
-  grab.frame = Frame(image, read.stamp, sequence_.extend(buffer.sequence), buffers_,
-                     static_cast<int>(buffer.index));
+  grab.take(Frame(image, read.stamp, sequence_.extend(buffer.sequence), buffers_,
+                  static_cast<int>(buffer.index)),
+            read.corrected);
 }
 
 void V4l2Source::refuse(const v4l2_buffer& buffer, DropCause cause, std::string reason,
                         Grab& grab) {
   sequence_.extend(buffer.sequence);
-  ++grab.drops[cause];
-  grab.reason = std::move(reason);
-  if (grab.kind == Grab::Kind::timeout) grab.kind = Grab::Kind::bad_frame;
+  grab.refuse(cause, std::move(reason));
   buffers_->give_back(static_cast<int>(buffer.index));
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "capture/buffer_layout.h"
+#include "capture/frame_pool.h"
 #include "capture/sequence_count.h"
 #include "capture/v4l2/controls.h"
 #include "capture/v4l2/format.h"
@@ -194,6 +195,31 @@ TEST(V4l2Controls, ThatAreRefusedAreToldAsTheyWereAskedFor) {
       ElementsAre(StartsWith("exposure = \"metered\": "), StartsWith("exposure_us = 10000: "),
                   StartsWith("white_balance = \"automatic\": "),
                   StartsWith("power_line = \"50 Hz\": ")));
+}
+
+TEST(Grab, HoldsTheNewestGoodFrameAndCountsTheOthers) {
+  const auto pool = FramePool::make();
+  const auto frame = [&](std::int64_t seq) {
+    const int slot = pool->take();
+    pool->slot(slot).size = {1, 1};
+    pool->slot(slot).bytes.resize(1);
+    return pool->frame(slot, {}, seq);
+  };
+  Grab grab;
+  grab.refuse(DropCause::damaged, "damaged");
+  EXPECT_EQ(grab.kind, Grab::Kind::bad_frame);
+  grab.take(frame(1), true);
+  grab.take(frame(2), false);
+  grab.refuse(DropCause::too_short, "short");
+  EXPECT_EQ(grab.kind, Grab::Kind::frame);
+  EXPECT_EQ(grab.frame.sensor_seq(), 2);
+  EXPECT_EQ(grab.stamps_corrected, 1);
+  EXPECT_EQ(grab.drops[DropCause::superseded], 1);
+  EXPECT_EQ(grab.drops.total(), 3);
+  EXPECT_EQ(grab.reason, "short");
+  grab.lose("is not there");
+  EXPECT_EQ(grab.kind, Grab::Kind::lost);
+  EXPECT_FALSE(grab.frame);
 }
 
 }  // namespace
