@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <system_error>
 
 namespace bole {
 namespace {
@@ -23,6 +24,8 @@ std::string message(const std::string& file, const std::string& key, const std::
 }
 
 }  // namespace
+
+std::string error_text(int error) { return std::generic_category().message(error); }
 
 ConfigError::ConfigError(const std::string& file, const std::string& key,
                          const std::string& problem, const std::string& remedy)

@@ -5,6 +5,9 @@
 
 namespace bole {
 
+/// errno in words.
+std::string error_text(int error);
+
 /// What a user has to mend before the program can start: a file, a key or an option that is
 /// damaged, missing or does not fit. Programs print what() as one line and exit with code 2.
 class ConfigError : public std::runtime_error {

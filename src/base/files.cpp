@@ -13,8 +13,6 @@
 namespace bole {
 namespace {
 
-std::string reason(int error) { return std::generic_category().message(error); }
-
 struct OpenedFile {
   UniqueFd fd;
   std::size_t size;
@@ -24,7 +22,7 @@ OpenedFile open_regular(const std::filesystem::path& path) {
   // O_NONBLOCK: a FIFO of that name must not hang the start.
   UniqueFd fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (!fd) {
-    throw ConfigError(path, "", "cannot be read: " + reason(errno),
+    throw ConfigError(path, "", "cannot be read: " + error_text(errno),
                       "give the path of a readable file");
   }
   struct stat info {};
@@ -40,7 +38,7 @@ void write_all(const UniqueFd& fd, std::span<const std::byte> bytes,
     const ssize_t written = ::write(fd.get(), bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) {
-      throw ConfigError(path, "", "cannot be written: " + reason(errno),
+      throw ConfigError(path, "", "cannot be written: " + error_text(errno),
                         "free space or permission");
     }
     bytes = bytes.subspan(static_cast<std::size_t>(written));
@@ -58,7 +56,7 @@ class TemporaryFile {
   explicit TemporaryFile(const std::filesystem::path& target)
       : name_(target.string() + ".XXXXXX"), fd_(::mkostemp(name_.data(), O_CLOEXEC)) {
     if (!fd_) {
-      throw ConfigError(target, "", "cannot be written: " + reason(errno),
+      throw ConfigError(target, "", "cannot be written: " + error_text(errno),
                         "give a folder that may be written to");
     }
   }
@@ -94,7 +92,7 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
   if (file.size == 0) throw ConfigError(path, "", "is empty", "build it anew");
   void* address = ::mmap(nullptr, file.size, PROT_READ, MAP_SHARED, file.fd.get(), 0);
   if (address == MAP_FAILED) {
-    throw ConfigError(path, "", "cannot be mapped: " + reason(errno), "");
+    throw ConfigError(path, "", "cannot be mapped: " + error_text(errno), "");
   }
   bytes_ = {static_cast<const std::byte*>(address), file.size};
 }
@@ -121,7 +119,7 @@ void read_file(const std::filesystem::path& path, std::size_t max_bytes,
   while (filled < bytes.size()) {
     const ssize_t got = ::read(file.fd.get(), bytes.data() + filled, bytes.size() - filled);
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw ConfigError(path, "", "cannot be read: " + reason(errno), "");
+    if (got < 0) throw ConfigError(path, "", "cannot be read: " + error_text(errno), "");
     if (got == 0) break;
     filled += static_cast<std::size_t>(got);
   }
@@ -140,7 +138,7 @@ void write_file_atomically(const std::filesystem::path& path, std::span<const st
   TemporaryFile temporary(path);
   write_all(temporary.fd(), bytes, path);
   if (!temporary.rename_to(path)) {
-    throw ConfigError(path, "", "cannot be replaced: " + reason(errno), "");
+    throw ConfigError(path, "", "cannot be replaced: " + error_text(errno), "");
   }
   sync_folder(folder);
 }

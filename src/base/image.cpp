@@ -27,6 +27,10 @@ std::optional<PixelFormat> pixel_format_from_name(std::string_view name) {
   return static_cast<PixelFormat>(found - kNames.begin());
 }
 
+std::string shown(ImageSize size) {
+  return std::to_string(size.width) + " x " + std::to_string(size.height);
+}
+
 int packed_row_bytes(PixelFormat format, int width) {
   switch (format) {
     case PixelFormat::yuyv:

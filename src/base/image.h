@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace bole {
@@ -36,6 +37,9 @@ struct ImageSize {
   int height = 0;  // pixels
   friend bool operator==(const ImageSize&, const ImageSize&) = default;
 };
+
+/// "640 x 480".
+std::string shown(ImageSize size);
 
 /// One plane of an image in memory that somebody else owns.
 struct Plane {

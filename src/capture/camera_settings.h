@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "base/image.h"
 #include "base/toml_table.h"
@@ -33,5 +34,10 @@ struct CameraSettings {
 /// Reads these keys of boled.toml's table [source], beside which others may stand; `size` is left
 /// for the calibration to fill in. Throws ConfigError.
 CameraSettings read_camera_settings(TomlTable& table);
+
+/// A setting as it stands in boled.toml: exposure = "metered".
+std::string as_written(CameraSettings::Exposure exposure);
+std::string as_written(CameraSettings::WhiteBalance white_balance);
+std::string as_written(CameraSettings::PowerLine power_line);
 
 }  // namespace bole

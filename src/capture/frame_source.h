@@ -1,10 +1,13 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "base/wakeup.h"
 #include "capture/drops.h"
 #include "capture/frame.h"
 
@@ -36,6 +39,13 @@ struct Grab {
   DropCounts drops;          ///< frames that came before this one and were not used
   int stamps_corrected = 0;  ///< stamps that lay in the future and were set to now
   std::string reason;        ///< of the last bad frame, or of the loss; else empty
+
+  /// A good frame has come: the newest wins, the one before goes back.
+  void take(Frame newest, bool stamp_corrected);
+  /// One has come that cannot be used.
+  void refuse(DropCause cause, std::string why);
+  /// The camera is gone, and what else was fetched of it is of no interest.
+  void lose(std::string why);
 };
 
 /// A camera, or files in place of one. One thread uses it; interrupt() may come from any.
@@ -44,13 +54,14 @@ class FrameSource {
   virtual ~FrameSource() = default;
 
   /// Finds the camera by its stable name and starts it. Throws CaptureError; the source is then
-  /// closed, and open() may be tried again.
+  /// closed, and open() may be tried again. A camera is told many things one after the other and
+  /// may take seconds over each: see on_step(); interrupt() ends it between two.
   virtual void open() = 0;
   /// Waits at most `timeout` for the newest frame. Only between open() and close().
   virtual Grab grab(std::chrono::nanoseconds timeout) = 0;
   /// Stops the camera. Frames still held elsewhere stay valid until they are dropped.
   virtual void close() noexcept = 0;
-  /// Makes a grab() that waits, or the next one, return `interrupted`.
+  /// Makes a grab() that waits, or the next one, return `interrupted`, and an open() throw.
   virtual void interrupt() noexcept = 0;
   /// Time from a frame to the next as negotiated; 0 while it is not known.
   virtual std::chrono::nanoseconds frame_period() const = 0;
@@ -61,6 +72,19 @@ class FrameSource {
   /// Tells how bright the panorama of a recent frame is: the mean of its seen pixels, 0 to 255. A
   /// camera whose exposure we meter acts on it. From any thread.
   virtual void metered(double /*mean*/) noexcept {}
+
+  /// `on_step` is called by each open(), in its thread, before each thing that the camera is told.
+  void on_step(std::function<void()> on_step) { on_step_ = std::move(on_step); }
+
+ protected:
+  /// To be called by open() at each step: tells of it. Throws CaptureError once `interrupted`.
+  void step(const Wakeup& interrupted) const {
+    if (interrupted.wait(0)) throw CaptureError("is not opened: interrupted");
+    if (on_step_) on_step_();
+  }
+
+ private:
+  std::function<void()> on_step_;
 };
 
 }  // namespace bole

@@ -8,6 +8,14 @@
 namespace bole {
 namespace {
 
+const std::string kFirstFrame = "waiting for the first frame";
+
+// The first time, the 10th, the 100th ...: what happens without end is told ever more seldom.
+bool is_told(std::int64_t times) {
+  while (times % 10 == 0) times /= 10;
+  return times == 1;
+}
+
 std::string seconds(std::int64_t ns) {
   const std::int64_t tenths = (ns + 50'000'000) / 100'000'000;
   return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " s";
@@ -62,9 +70,12 @@ Grab Supervisor::open_or_wait() {
 }
 
 void Supervisor::open() {
+  // May take seconds. Later on it is told why there is no camera, until there is one.
+  if (state_ == CameraState::starting) enter(CameraState::opening, kFirstFrame);
   try {
     source_.open();
   } catch (const std::runtime_error& error) {  // the camera's refusal, or the system's
+    if (interrupted_.wait(0)) return;          // which next() tells
     ++counts_.failed_opens;
     wait_for_camera(error.what());
     return;
@@ -76,7 +87,7 @@ void Supervisor::open() {
   last_frame_ns_ = clock_.mono_ns();
   counts_.settings_refused += std::ssize(source_.refused());
   // A stalled camera that was restarted stays stalled until a frame comes.
-  if (state_ != CameraState::stalled) enter(CameraState::opening, "waiting for the first frame");
+  if (state_ != CameraState::stalled) enter(CameraState::opening, kFirstFrame);
 }
 
 void Supervisor::wait_for_camera(const std::string& reason) {
@@ -90,7 +101,11 @@ Grab Supervisor::stream() {
   account(grab);
   switch (grab.kind) {
     case Grab::Kind::frame:
-      streaming();
+      if (const std::string reason = unusable(); reason.empty()) {
+        streaming();
+      } else {
+        check_stall(reason);
+      }
       break;
     case Grab::Kind::bad_frame:
     case Grab::Kind::timeout:
@@ -128,11 +143,33 @@ void Supervisor::account(const Grab& grab) {
 void Supervisor::streaming() {
   got_frame_ = true;
   last_frame_ns_ = clock_.mono_ns();
-  if (state_ == CameraState::streaming) return;
-  enter(CameraState::streaming, source_.description());
+  if (state_ != CameraState::streaming) {
+    streaming_since_ns_ = last_frame_ns_;
+    enter(CameraState::streaming, source_.description());
+  } else if (!told_.empty() && last_frame_ns_ - streaming_since_ns_ >= options_.settle.count()) {
+    settle();
+  }
+}
+
+// The outage is over. A camera that comes and goes with every other frame is still in the same one.
+void Supervisor::settle() {
+  const std::int64_t times = told_[{state_, reason_}];
+  if (!is_told(times)) on_event_({state_, reason_, false, times});
   told_.clear();
   reopen_wait_ns_ = options_.reopen_min.count();
   restart_wait_ns_ = options_.restart_min.count();
+}
+
+void Supervisor::judged(std::string_view unusable) {
+  const std::lock_guard lock(judged_mutex_);
+  unusable_in_a_row_ = unusable.empty() ? 0 : unusable_in_a_row_ + 1;
+  unusable_ = unusable;
+}
+
+// Why frames are of no use of late; empty when they are of use.
+std::string Supervisor::unusable() const {
+  const std::lock_guard lock(judged_mutex_);
+  return unusable_in_a_row_ < options_.unusable_frames ? "" : unusable_;
 }
 
 std::int64_t Supervisor::stall_after_ns() const {
@@ -170,8 +207,8 @@ void Supervisor::enter(CameraState state, const std::string& reason) {
   if (state == state_ && reason == reason_) return;
   state_ = state;
   reason_ = reason;
-  const bool repeated = !told_.insert({state, reason}).second;
-  on_event_({state, reason, repeated});
+  const std::int64_t times = ++told_[{state, reason}];
+  on_event_({state, reason, !is_told(times), times});
 }
 
 }  // namespace bole

@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <set>
+#include <map>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,7 +18,7 @@ namespace bole {
 /// How the camera is doing.
 enum class CameraState : std::uint8_t {
   starting,   ///< nothing tried yet
-  opening,    ///< opened; the first frame has not come yet
+  opening,    ///< being opened, or open: the first frame has not come yet
   streaming,  ///< frames arrive
   stalled,    ///< the camera is there, but frames have stopped
   no_camera,  ///< gone, or never there, or not as it must be; it is being waited for
@@ -28,7 +29,10 @@ std::string_view name(CameraState state);
 struct CameraEvent {
   CameraState state;
   std::string reason;  ///< why it is not streaming; when it is, what it streams
-  bool repeated;       ///< told before in this outage: for the status, not for the log
+  /// Told before, and neither for the 10th, the 100th, the 1000th ... time nor to say that it is
+  /// over: for the status, not for the log.
+  bool repeated;
+  std::int64_t times = 1;  ///< that it was so since the camera last streamed well
 };
 
 /// When a camera counts as stalled and how often it is tried again.
@@ -40,6 +44,8 @@ struct SupervisorOptions {
   std::chrono::nanoseconds restart_max{16'000'000'000};  ///< ever more seldom, up to this
   std::chrono::nanoseconds reopen_min{50'000'000};       ///< a missing camera is looked for
   std::chrono::nanoseconds reopen_max{200'000'000};      ///< ever more seldom, up to this
+  std::chrono::nanoseconds settle{5'000'000'000};        ///< of streaming end an outage
+  int unusable_frames = 5;                               ///< one after the other are as none
   std::chrono::nanoseconds tick{100'000'000};            ///< next() returns at least this often
 };
 
@@ -69,12 +75,18 @@ class Supervisor {
   Supervisor(const Supervisor&) = delete;
   Supervisor& operator=(const Supervisor&) = delete;
 
-  /// Takes one step and returns after options.tick at the latest. The grab's kind is `frame`, `end`
+  /// Takes one step and returns after options.tick at the latest, or once the source was opened,
+  /// which tells of its own steps (FrameSource::on_step). The grab's kind is `frame`, `end`
   /// (replay only), `interrupted`, `bad_frame`, or `timeout`: nothing yet, call again; returning
   /// is progress enough for a watchdog, since the camera is then properly being waited for.
   Grab next();
   /// Makes a next() that waits, or the next one, return `interrupted`.
   void interrupt() noexcept;
+
+  /// Tells what became of a frame later on: why it could not be used; empty when it could. Several
+  /// in a row of no use are as if none had come: the camera stalls and is restarted. From any
+  /// thread.
+  void judged(std::string_view unusable);
 
   CameraState state() const { return state_; }
   const CaptureCounts& counts() const { return counts_; }
@@ -86,6 +98,8 @@ class Supervisor {
   Grab stream();
   void account(const Grab& grab);
   void streaming();
+  void settle();
+  std::string unusable() const;
   std::int64_t stall_after_ns() const;
   void check_stall(const std::string& bad_frame);
   void close();
@@ -100,7 +114,12 @@ class Supervisor {
 
   CameraState state_ = CameraState::starting;
   std::string reason_;
-  std::set<std::pair<CameraState, std::string>> told_;  // in this outage
+  std::map<std::pair<CameraState, std::string>, std::int64_t> told_;  // times in this outage
+  std::int64_t streaming_since_ns_ = 0;
+
+  mutable std::mutex judged_mutex_;  // of the two below
+  int unusable_in_a_row_ = 0;
+  std::string unusable_;  // why the last of them was
 
   bool open_ = false;
   bool got_frame_ = false;               // since it was opened

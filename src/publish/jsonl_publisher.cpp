@@ -18,8 +18,6 @@
 namespace bole {
 namespace {
 
-std::string reason(int error) { return std::generic_category().message(error); }
-
 int open_target(const std::filesystem::path& target, JsonlPublisher::Earlier earlier) {
   if (target == "-") return ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
   const int emptied = earlier == JsonlPublisher::Earlier::erased ? O_TRUNC : 0;
@@ -41,7 +39,8 @@ bool ends_within_a_line(const std::filesystem::path& target) {
 JsonlPublisher::JsonlPublisher(const std::filesystem::path& target, Earlier earlier)
     : fd_(open_target(target, earlier)), torn_(ends_within_a_line(target)) {
   if (!fd_) {
-    throw ConfigError("publish", "jsonl:" + target.string(), "cannot be written: " + reason(errno),
+    throw ConfigError("publish", "jsonl:" + target.string(),
+                      "cannot be written: " + error_text(errno),
                       "give a path that may be written to, or - for standard output");
   }
 }
@@ -64,7 +63,7 @@ void JsonlPublisher::write_all(std::string_view text) {
     const ssize_t written =
         ::write(fd_.get(), text.data(), std::min<std::size_t>(text.size(), PIPE_BUF));
     if (written < 0 && errno != EINTR && errno != EAGAIN) {
-      throw BusError("cannot be written: " + reason(errno));
+      throw BusError("cannot be written: " + error_text(errno));
     }
     if (written <= 0) continue;
     text.remove_prefix(static_cast<std::size_t>(written));

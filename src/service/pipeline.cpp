@@ -42,7 +42,9 @@ Pipeline::Pipeline(FrameSource& source, Clock& clock, Processor& processor, Tele
       trace_(trace),
       supervisor_(source, clock, [this](const CameraEvent& event) { on_camera(event); }),
       buses_(
-          std::move(publishers), when_full_, [this] { attention_.raise(); }, trace) {}
+          std::move(publishers), when_full_, [this] { attention_.raise(); }, trace) {
+  source_.on_step([this] { waiting_for_camera(); });
+}
 
 Pipeline::~Pipeline() {
   supervisor_.interrupt();
@@ -52,6 +54,12 @@ Pipeline::~Pipeline() {
   for (std::thread* thread : {&capture_thread_, &process_thread_}) {
     if (thread->joinable()) thread->join();
   }
+  source_.on_step({});
+}
+
+// The camera is properly being waited for. A frame that is worked on has to tell of itself.
+void Pipeline::waiting_for_camera() {
+  if (!processing_) service_manager_.progress();
 }
 
 void Pipeline::on_camera(const CameraEvent& event) {
@@ -86,7 +94,7 @@ void Pipeline::capture() {
     if (!grab.reason.empty()) telemetry_.bad_frame(grab.reason);
     const bool waiting =
         supervisor_.state() != CameraState::streaming || grab.kind == Grab::Kind::timeout;
-    if (waiting && !processing_) service_manager_.progress();  // the camera is properly waited for
+    if (waiting) waiting_for_camera();
   }
   frames_.close();
 }
@@ -98,8 +106,10 @@ void Pipeline::process() {
     processing_ = true;
     try {
       process(captured);
+      supervisor_.judged("");
     } catch (const std::exception& error) {
       telemetry_.unusable(captured.frame.file(), error.what());
+      supervisor_.judged(error.what());
     }
     captured = {};
     processing_ = false;

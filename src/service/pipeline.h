@@ -44,6 +44,7 @@ class Pipeline {
   void process(const Captured& captured);
   void trace(const Captured& captured, const Processor::Result& result);
   void on_camera(const CameraEvent& event);
+  void waiting_for_camera();
   void publish_status(bool stopping);
   // Until then, or until something needs attention; true when `stop_fd` (-1: none) is readable.
   bool wait(int stop_fd, std::int64_t until_ns);

@@ -10,7 +10,6 @@
 namespace bole {
 namespace {
 
-constexpr std::int64_t kUnusableInARow = 5;    // as many periods as without a frame make a stall
 constexpr std::int64_t kRateNs = 500'000'000;  // over less a rate would be noise
 
 // A replay names each bad file; a camera with ever new words must not fill the memory.
@@ -54,7 +53,8 @@ void Telemetry::capture_event(const CameraEvent& event) {
   if (!event.repeated) {
     const auto level = streaming || event.state == CameraState::opening ? spdlog::level::info
                                                                         : spdlog::level::warn;
-    spdlog::log(level, "state {}: {}", name(event.state), event.reason);
+    spdlog::log(level, "state {}: {}{}", name(event.state), event.reason,
+                event.times > 1 ? " (" + std::to_string(event.times) + " times)" : "");
   }
   const std::lock_guard lock(mutex_);
   if (event.state != event_.state) forget_frames();
@@ -90,7 +90,6 @@ void Telemetry::bad_frame(const std::string& reason) {
 void Telemetry::unusable(std::string_view file, const std::string& reason) {
   const std::lock_guard lock(mutex_);
   ++dropped_.unusable;
-  ++unusable_in_a_row_;
   note((file.empty() ? "frame" : std::string(file)) + ": " + reason);
 }
 
@@ -105,7 +104,6 @@ void Telemetry::processed(std::int64_t latency_ns, std::int64_t trees_rejected) 
   const std::lock_guard lock(mutex_);
   recent_.at(recent_count_++ % kRecent) = latency_ns;
   ++lists_;
-  unusable_in_a_row_ = 0;
   latency_.add(latency_ns);
   trees_rejected_ = trees_rejected;
 }
@@ -148,14 +146,9 @@ status_t Telemetry::status(std::int64_t now_ns, bool stopping) {
   status.version = version_;
   status.camera = camera_;
   status.source = source_;
-  const bool streaming = event_.state == CameraState::streaming;
   status.state = wire_state(event_.state);
+  const bool streaming = event_.state == CameraState::streaming;
   if (!streaming) status.state_reason = event_.reason;
-  const bool of_use = streaming && unusable_in_a_row_ < kUnusableInARow;
-  if (streaming && !of_use) {
-    status.state = status_t::STATE_STALLED;
-    status.state_reason = "no usable frame: " + last_error_;
-  }
   if (stopping) status.state = status_t::STATE_STOPPING;
   status.frames = capture_.frames;
   status.lists = lists_;
@@ -167,7 +160,7 @@ status_t Telemetry::status(std::int64_t now_ns, bool stopping) {
   status.frame_rate = frame_rate_;
   status.list_rate = list_rate_;
 
-  if (of_use) tell_frames(status);  // else the last ones may still be worked on
+  if (streaming) tell_frames(status);  // else the last ones may still be worked on
   return status;
 }
 

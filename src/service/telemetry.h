@@ -31,8 +31,7 @@ class Telemetry {
   void overwritten();
   /// A frame that capture could not use (it counts them itself). Each reason is logged once.
   void bad_frame(const std::string& reason);
-  /// A frame that processing could not use. Each reason is logged once, then counted. Where it is
-  /// one after the other, a status says that the camera is stalled.
+  /// A frame that processing could not use. Each reason is logged once, then counted.
   void unusable(std::string_view file, const std::string& reason);
   /// A list was encoded; `latency_ns` from capture to publish.
   void processed(std::int64_t latency_ns, std::int64_t trees_rejected);
@@ -71,7 +70,6 @@ class Telemetry {
   ProcessingDrops dropped_;
   std::int64_t trees_rejected_ = 0;
   std::int64_t lists_ = 0;
-  std::int64_t unusable_in_a_row_ = 0;
   std::string degraded_reason_;
   std::string last_error_;
   std::set<std::string> told_;

@@ -13,11 +13,7 @@ class BadFrame : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
   BadFrame(ImageSize got, ImageSize expected)
-      : std::runtime_error("is " + text(got) + ", the calibration's image is " + text(expected)) {}
-
- private:
-  static std::string text(ImageSize size) {
-    return std::to_string(size.width) + " x " + std::to_string(size.height);
+      : std::runtime_error("is " + shown(got) + ", the calibration's image is " + shown(expected)) {
   }
 };
 

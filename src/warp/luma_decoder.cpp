@@ -5,6 +5,7 @@
 #include <new>
 #include <string>
 
+#include "base/jpeg_warning.h"
 #include "warp/bad_frame.h"
 
 namespace bole {
@@ -26,9 +27,12 @@ ImageView LumaDecoder::decode(std::span<const std::byte> jpeg, ImageSize size) {
   }
   if (width != size.width || height != size.height) throw BadFrame({width, height}, size);
   luma_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  // libjpeg leaves chroma's transform out when grey is asked for. A warning is a damaged frame too.
+  // libjpeg leaves chroma's transform out when grey is asked for. A warning is a damaged frame too,
+  // but for one.
   if (tjDecompress2(handle_.get(), bytes, jpeg.size(), luma_.data(), width, width, height,
-                    TJPF_GRAY, 0) != 0) {
+                    TJPF_GRAY, 0) != 0 &&
+      !(tjGetErrorCode(handle_.get()) == TJERR_WARNING &&
+        is_jpeg_padding(tjGetErrorStr2(handle_.get())))) {
     throw BadFrame(std::string("damaged JPEG: ") + tjGetErrorStr2(handle_.get()));
   }
   return {PixelFormat::grey, size, {Plane{std::as_bytes(std::span(luma_)), width}, Plane{}}};

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
+#include "base/errors.h"
 #include "capture/libcamera/formats.h"
 #include "capture/libcamera/libcamera.h"
 #include "capture/libcamera/manager.h"
@@ -20,12 +20,7 @@
 namespace bole {
 namespace {
 
-constexpr double kNotMetered = -1;
 constexpr std::chrono::seconds kLibcameraPatience{5};
-
-std::string shown(ImageSize size) {
-  return std::to_string(size.width) + " x " + std::to_string(size.height);
-}
 
 libcamera::Size theirs(ImageSize size) {
   return {static_cast<unsigned>(size.width), static_cast<unsigned>(size.height)};
@@ -37,7 +32,7 @@ class Acquired {
   explicit Acquired(std::shared_ptr<libcamera::Camera> camera) : camera_(std::move(camera)) {
     const int error = camera_->acquire();
     if (error == -EBUSY) throw CaptureError("is in use by another program");
-    if (error != 0) throw CaptureError(std::string("cannot be had: ") + std::strerror(-error));
+    if (error != 0) throw CaptureError("cannot be had: " + error_text(-error));
   }
   Acquired(const Acquired&) = delete;
   Acquired& operator=(const Acquired&) = delete;
@@ -75,7 +70,7 @@ Agreed configure(libcamera::Camera& camera, const CameraSettings& settings) {
       continue;
     }
     if (const int error = camera.configure(agreed.configuration.get()); error != 0) {
-      throw CaptureError(std::string("takes no configuration: ") + std::strerror(-error));
+      throw CaptureError("takes no configuration: " + error_text(-error));
     }
     const auto stride = static_cast<int>(stream.stride);
     agreed.layout.pixels = format.ours;
@@ -119,13 +114,13 @@ class LibcameraSource final : public FrameSource {
       manager_.reset();
     }
     session_.reset();
-    exposure_.reset();
+    metering_.stop();
   }
   void interrupt() noexcept override { interrupted_.raise(); }
   std::chrono::nanoseconds frame_period() const override { return period_; }
   std::string description() const override { return description_; }
   std::vector<std::string> refused() const override { return refused_; }
-  void metered(double mean) noexcept override { mean_ = mean; }
+  void metered(double mean) noexcept override { metering_.tell(mean); }
 
  private:
   void forget_unplugged();
@@ -147,9 +142,11 @@ class LibcameraSource final : public FrameSource {
   std::shared_ptr<LibcameraSession> session_;
   std::shared_ptr<LibcameraSession> unplugged_;  // closed, but libcamera does not know yet
   SequenceCount sequence_;
-  std::optional<ExposureController> exposure_;
-  std::atomic<double> mean_ = kNotMetered;
+  Metering metering_;
+  bool metering_held_ = false;  // below the frame period
   std::chrono::nanoseconds period_{0};
+  std::int64_t first_stamp_ns_ = 0;
+  std::int64_t first_sequence_ = 0;
   std::int64_t last_stamp_ns_ = 0;
   std::int64_t last_sequence_ = 0;
   std::string description_;
@@ -166,35 +163,42 @@ void LibcameraSource::forget_unplugged() {
 
 void LibcameraSource::start() {
   if (usb_camera_is_missing(id_)) throw CaptureError(kNotThere);
+  step(interrupted_);
   manager_ = camera_manager();
   auto camera = manager_->get(id_);
   if (!camera) throw CaptureError(kNotThere);
+  step(interrupted_);
   Acquired acquired(std::move(camera));
+  step(interrupted_);
   const Agreed agreed = configure(*acquired, settings_);
   refused_.clear();
   const libcamera::ControlList controls = make_controls(*acquired, settings_, refused_);
-  const std::optional<ExposureRange> range = exposure_range(*acquired);
-  if (settings_.exposure == CameraSettings::Exposure::metered && range) {
-    exposure_.emplace(*range, settings_.exposure_us);
-  }
-  mean_ = kNotMetered;
+  std::string unmetered = metering_.start(settings_, exposure_range(*acquired));
+  if (!unmetered.empty()) refused_.push_back(std::move(unmetered));
+  metering_held_ = false;
+  first_stamp_ns_ = 0;
   sequence_ = {};
   period_ = std::chrono::nanoseconds(0);
   last_stamp_ns_ = 0;
   const libcamera::StreamConfiguration& stream = agreed.configuration->at(0);
+  step(interrupted_);
   session_ =
       std::make_shared<LibcameraSession>(acquired.take(), stream.stream(), agreed.layout, controls);
   description_ = id_ + " (" + libcamera_version() + "), " + stream.toString() + ", " +
                  std::to_string(session_->count()) + " buffers";
 }
 
-// Sets the exposure that the last brightness told of calls for.
+// Sets the exposure that the last brightness told of calls for, once it is known how long a frame
+// takes: libcamera does not say, and a longer exposure would make it longer.
 void LibcameraSource::expose() {
-  const double mean = mean_.exchange(kNotMetered);
-  if (!exposure_ || mean == kNotMetered) return;
-  if (const std::optional<int> exposure_us = exposure_->update(mean)) {
-    session_->expose(*exposure_us);
+  constexpr std::int64_t kFramesToKnow = 10;
+  const std::int64_t frames = last_sequence_ - first_sequence_;
+  if (first_stamp_ns_ == 0 || frames < kFramesToKnow) return;
+  if (!metering_held_) {
+    metering_.hold_below(std::chrono::nanoseconds((last_stamp_ns_ - first_stamp_ns_) / frames));
   }
+  metering_held_ = true;
+  if (const std::optional<int> exposure_us = metering_.due()) session_->expose(*exposure_us);
 }
 
 void LibcameraSource::wait(std::int64_t timeout_ns) const {
@@ -235,10 +239,7 @@ void LibcameraSource::drain(Grab& grab) {
       refuse(completed, DropCause::too_short, "a frame was shorter than its format", grab);
     }
   }
-  if (!session_->gone()) return;
-  grab.frame = Frame();
-  grab.kind = Grab::Kind::lost;
-  grab.reason = kNotThere + in_brackets(id_);
+  if (session_->gone()) grab.lose(kNotThere + in_brackets(id_));
 }
 
 void LibcameraSource::take(const LibcameraSession::Completed& completed, const ImageView& image,
@@ -250,20 +251,20 @@ void LibcameraSource::take(const LibcameraSession::Completed& completed, const I
   if (last_stamp_ns_ > 0 && sequence > last_sequence_ && stamp_ns > last_stamp_ns_) {
     period_ = std::chrono::nanoseconds((stamp_ns - last_stamp_ns_) / (sequence - last_sequence_));
   }
+  if (first_stamp_ns_ == 0) {
+    first_stamp_ns_ = stamp_ns;
+    first_sequence_ = sequence;
+  }
   last_stamp_ns_ = stamp_ns;
   last_sequence_ = sequence;
-  if (grab.frame) ++grab.drops[DropCause::superseded];
-  grab.stamps_corrected += corrected ? 1 : 0;
-  grab.kind = Grab::Kind::frame;
-  grab.frame = Frame(image, {StampClock::monotonic, stamp_ns}, sequence, session_, completed.index);
+  grab.take(Frame(image, {StampClock::monotonic, stamp_ns}, sequence, session_, completed.index),
+            corrected);
 }
 
 void LibcameraSource::refuse(const LibcameraSession::Completed& completed, DropCause cause,
                              std::string reason, Grab& grab) {
   sequence_.extend(completed.sequence);
-  ++grab.drops[cause];
-  grab.reason = std::move(reason);
-  if (grab.kind == Grab::Kind::timeout) grab.kind = Grab::Kind::bad_frame;
+  grab.refuse(cause, std::move(reason));
   session_->give_back(completed.index);
 }
 

@@ -1,9 +1,9 @@
 #include "capture/libcamera/manager.h"
 
-#include <cstring>
 #include <mutex>
 #include <string>
 
+#include "base/errors.h"
 #include "capture/frame_source.h"
 
 namespace bole {
@@ -15,7 +15,7 @@ std::shared_ptr<libcamera::CameraManager> camera_manager() {
   if (auto running = current.lock()) return running;
   auto manager = std::make_unique<libcamera::CameraManager>();
   if (const int error = manager->start(); error != 0) {
-    throw CaptureError(std::string("libcamera does not start: ") + std::strerror(-error));
+    throw CaptureError("libcamera does not start: " + error_text(-error));
   }
   std::shared_ptr<libcamera::CameraManager> shared(manager.release(),
                                                    [](libcamera::CameraManager* stopping) {

@@ -7,18 +7,18 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <string>
 #include <thread>
 #include <utility>
 
+#include "base/errors.h"
 #include "capture/libcamera/settings.h"
 
 namespace bole {
 namespace {
 
 [[noreturn]] void fail(const std::string& what, int error) {
-  throw CaptureError(what + ": " + std::strerror(error));
+  throw CaptureError(what + ": " + error_text(error));
 }
 
 // Caches between camera and processor, where a platform needs it; elsewhere it costs nothing.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <sstream>
 #include <type_traits>
 
 #define BOLE_LIBCAMERA_FROM(major, minor) \
@@ -47,11 +48,11 @@ void set_exposure_mode(Writer& writer, const CameraSettings& settings) {
   if (settings.exposure == Exposure::unchanged) return;
   const bool automatic = settings.exposure == Exposure::automatic;
 #if BOLE_LIBCAMERA_FROM(0, 5)
-  writer.set("exposure", controls::ExposureTimeMode,
+  writer.set(as_written(settings.exposure), controls::ExposureTimeMode,
              automatic ? static_cast<std::int32_t>(controls::ExposureTimeModeAuto)
                        : static_cast<std::int32_t>(controls::ExposureTimeModeManual));
 #else
-  writer.set("exposure", controls::AeEnable, automatic);
+  writer.set(as_written(settings.exposure), controls::AeEnable, automatic);
 #endif
   if (automatic) return;
   writer.set("exposure_us = " + std::to_string(settings.exposure_us), controls::ExposureTime,
@@ -70,7 +71,7 @@ void set_white_balance(Writer& writer, const CameraSettings& settings) {
   using WhiteBalance = CameraSettings::WhiteBalance;
   if (settings.white_balance == WhiteBalance::unchanged) return;
   const bool automatic = settings.white_balance == WhiteBalance::automatic;
-  writer.set("white_balance", controls::AwbEnable, automatic);
+  writer.set(as_written(settings.white_balance), controls::AwbEnable, automatic);
   if (automatic) return;
   const std::string what = "white_balance_k = " + std::to_string(settings.white_balance_k);
 #if BOLE_LIBCAMERA_FROM(0, 4)
@@ -86,16 +87,16 @@ void set_power_line(Writer& writer, CameraSettings::PowerLine wanted) {
   if (wanted == PowerLine::unchanged) return;
 #if BOLE_LIBCAMERA_FROM(0, 2)
   const auto mode = [&](std::int32_t value) {
-    writer.set("power_line", controls::AeFlickerMode, value);
+    writer.set(as_written(wanted), controls::AeFlickerMode, value);
   };
   if (wanted == PowerLine::off) return mode(controls::FlickerOff);
   if (wanted == PowerLine::automatic) return mode(controls::FlickerAuto);
   mode(controls::FlickerManual);
   // Lamps flicker at twice the line's frequency.
-  writer.set("power_line", controls::AeFlickerPeriod,
+  writer.set(as_written(wanted), controls::AeFlickerPeriod,
              std::int32_t{wanted == PowerLine::hz50 ? 10'000 : 8'333});
 #else
-  writer.refuse("power_line");
+  writer.refuse(as_written(wanted));
 #endif
 }
 
@@ -103,7 +104,9 @@ void set_frame_rate(Writer& writer, double frame_rate) {
   if (frame_rate <= 0) return;
   const auto period_us = static_cast<std::int64_t>(1e6 / frame_rate);
   const std::array limits = {period_us, period_us};
-  writer.set("frame_rate", controls::FrameDurationLimits,
+  std::ostringstream what;
+  what << "frame_rate = " << frame_rate;
+  writer.set(what.str(), controls::FrameDurationLimits,
              libcamera::Span<const std::int64_t, 2>(limits));
 }
 

@@ -14,10 +14,6 @@
 namespace bole {
 namespace {
 
-std::string shown(ImageSize size) {
-  return std::to_string(size.width) + " x " + std::to_string(size.height);
-}
-
 // True when `file` begins as a kind of image does that OpenCV decodes for us. It would hand
 // anything else on to every reader it was built with, down to those of maps and satellite pictures.
 bool is_known_image(std::span<const std::byte> file) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "base/jpeg_warning.h"
 #include "capture/replay/image_file.h"
 
 namespace bole {
@@ -41,11 +42,12 @@ void decode_jpeg(std::span<const std::byte> file, ImageSize wanted, FrameSlot& s
   const bool grey = colourspace == TJCS_GRAY;
   slot.format = grey ? PixelFormat::grey : PixelFormat::bgr24;
   slot.bytes.resize(packed_frame_bytes(slot.format, slot.size));
-  // A warning counts as an error: what a truncated file lacks would come out as grey.
+  // A warning counts as an error, but for one: what a truncated file lacks would come out as grey.
   if (::tjDecompress2(decoder.get(), bytes, size,
                       reinterpret_cast<unsigned char*>(slot.bytes.data()), slot.size.width, 0,
-                      slot.size.height, grey ? TJPF_GRAY : TJPF_BGR,
-                      TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS) != 0) {
+                      slot.size.height, grey ? TJPF_GRAY : TJPF_BGR, TJFLAG_LIMITSCANS) != 0 &&
+      !(::tjGetErrorCode(decoder.get()) == TJERR_WARNING &&
+        is_jpeg_padding(::tjGetErrorStr2(decoder.get())))) {
     fail(decoder);
   }
 }

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <cstdlib>
+
+#include <utility>
+#include "base/errors.h"
 
 namespace bole {
 namespace {
@@ -11,12 +14,12 @@ constexpr int kExposureUnitUs = 100;  // of V4L2_CID_EXPOSURE_ABSOLUTE
 
 int write_control(const V4l2Device& device, std::uint32_t id, int value) {
   v4l2_control control{id, value};
-  return device.call(VIDIOC_S_CTRL, &control);
+  return device.ask(VIDIOC_S_CTRL, &control);
 }
 
 std::optional<int> read_control(const V4l2Device& device, std::uint32_t id) {
   v4l2_control control{id, 0};
-  if (device.call(VIDIOC_G_CTRL, &control) != 0) return std::nullopt;
+  if (device.ask(VIDIOC_G_CTRL, &control) != 0) return std::nullopt;
   return control.value;
 }
 
@@ -42,6 +45,8 @@ class Writer {
   // Sets a control that only some cameras have and that nobody asked for by name.
   void set_quietly(std::uint32_t id, int value) { write_control(device_, id, value); }
 
+  void tell(std::string line) { refused_.push_back(std::move(line)); }
+
   std::vector<std::string> refused() && { return std::move(refused_); }
 
  private:
@@ -57,16 +62,22 @@ class Writer {
   std::vector<std::string> refused_;
 };
 
-void set_exposure_mode(Writer& writer, const CameraSettings& settings) {
+void set_exposure_mode(Writer& writer, const CameraSettings& settings,
+                       const std::optional<ExposureRange>& range) {
   using Exposure = CameraSettings::Exposure;
   if (settings.exposure == Exposure::automatic) {
-    writer.set("exposure = \"automatic\"", V4L2_CID_EXPOSURE_AUTO,
+    writer.set(as_written(settings.exposure), V4L2_CID_EXPOSURE_AUTO,
                {V4L2_EXPOSURE_AUTO, V4L2_EXPOSURE_APERTURE_PRIORITY});
   } else if (settings.exposure != Exposure::unchanged) {
-    writer.set("exposure = \"fixed\"", V4L2_CID_EXPOSURE_AUTO,
+    writer.set(as_written(settings.exposure), V4L2_CID_EXPOSURE_AUTO,
                {V4L2_EXPOSURE_MANUAL, V4L2_EXPOSURE_SHUTTER_PRIORITY});
-    writer.set("exposure_us = " + std::to_string(settings.exposure_us), V4L2_CID_EXPOSURE_ABSOLUTE,
-               {std::max(settings.exposure_us / kExposureUnitUs, 1)});
+    const std::string what = "exposure_us = " + std::to_string(settings.exposure_us);
+    const int nearest_us = range ? range->nearest(settings.exposure_us) : settings.exposure_us;
+    writer.set(what, V4L2_CID_EXPOSURE_ABSOLUTE, {std::max(nearest_us / kExposureUnitUs, 1)});
+    // Within a step it is what was asked for.
+    if (range && std::abs(nearest_us - settings.exposure_us) >= range->step_us) {
+      writer.tell(what + ": the camera's nearest is " + std::to_string(nearest_us));
+    }
   }
 }
 
@@ -74,7 +85,7 @@ void set_white_balance(Writer& writer, const CameraSettings& settings) {
   using WhiteBalance = CameraSettings::WhiteBalance;
   if (settings.white_balance == WhiteBalance::unchanged) return;
   const bool automatic = settings.white_balance == WhiteBalance::automatic;
-  writer.set("white_balance", V4L2_CID_AUTO_WHITE_BALANCE, {automatic ? 1 : 0});
+  writer.set(as_written(settings.white_balance), V4L2_CID_AUTO_WHITE_BALANCE, {automatic ? 1 : 0});
   if (automatic) return;
   writer.set("white_balance_k = " + std::to_string(settings.white_balance_k),
              V4L2_CID_WHITE_BALANCE_TEMPERATURE, {settings.white_balance_k});
@@ -83,7 +94,7 @@ void set_white_balance(Writer& writer, const CameraSettings& settings) {
 void set_power_line(Writer& writer, CameraSettings::PowerLine wanted) {
   using PowerLine = CameraSettings::PowerLine;
   const auto set = [&](int value) {
-    writer.set("power_line", V4L2_CID_POWER_LINE_FREQUENCY, {value});
+    writer.set(as_written(wanted), V4L2_CID_POWER_LINE_FREQUENCY, {value});
   };
   switch (wanted) {
     case PowerLine::unchanged:
@@ -107,7 +118,7 @@ void set_power_line(Writer& writer, CameraSettings::PowerLine wanted) {
 
 std::vector<std::string> apply_controls(const V4l2Device& device, const CameraSettings& settings) {
   Writer writer(device);
-  set_exposure_mode(writer, settings);
+  set_exposure_mode(writer, settings, exposure_range(device));
   if (settings.gain) {
     writer.set_quietly(V4L2_CID_AUTOGAIN, 0);
     const int gain = static_cast<int>(std::lround(*settings.gain));
@@ -119,17 +130,19 @@ std::vector<std::string> apply_controls(const V4l2Device& device, const CameraSe
 }
 
 bool set_exposure(const V4l2Device& device, int exposure_us) {
-  return write_control(device, V4L2_CID_EXPOSURE_ABSOLUTE,
-                       std::max(exposure_us / kExposureUnitUs, 1)) == 0;
+  v4l2_control control{V4L2_CID_EXPOSURE_ABSOLUTE, exposure_us / kExposureUnitUs};
+  return device.call(VIDIOC_S_CTRL, &control) == 0;
 }
 
-ExposureRange exposure_range(const V4l2Device& device) {
+std::optional<ExposureRange> exposure_range(const V4l2Device& device) {
   v4l2_queryctrl query{};
   query.id = V4L2_CID_EXPOSURE_ABSOLUTE;
-  if (device.call(VIDIOC_QUERYCTRL, &query) != 0) return {};
+  if (device.ask(VIDIOC_QUERYCTRL, &query) != 0) return std::nullopt;
   constexpr int kLongest = 10'000'000 / kExposureUnitUs;
-  return {std::clamp(query.minimum, 1, kLongest) * kExposureUnitUs,
-          std::clamp(query.maximum, 1, kLongest) * kExposureUnitUs};
+  const int min = std::clamp(query.minimum, 1, kLongest);
+  const int max = std::clamp(query.maximum, min, kLongest);
+  const int step = std::clamp(query.step, 1, kLongest);
+  return ExposureRange{min * kExposureUnitUs, max * kExposureUnitUs, step * kExposureUnitUs};
 }
 
 }  // namespace bole

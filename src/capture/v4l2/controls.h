@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,13 +11,15 @@
 namespace bole {
 
 /// Sets exposure, gain, white balance and power-line frequency as far as they are asked for.
-/// Returns a line for each that the camera refused or changed: "gain = 300: the camera has 255".
+/// Returns a line for each that the camera refused or changed: "gain = 300: the camera takes 255
+/// for 300". Throws CaptureError when it does not answer.
 std::vector<std::string> apply_controls(const V4l2Device& device, const CameraSettings& settings);
 
-/// Sets the exposure time, clamped to what the camera can. False when it refuses.
+/// Sets an exposure time, one of the camera's exposure_range(). False when it refuses.
 bool set_exposure(const V4l2Device& device, int exposure_us);
 
-/// The exposure times that the camera can, in microseconds; {0, 0} when it does not say.
-ExposureRange exposure_range(const V4l2Device& device);
+/// The exposure times that the camera can; nullopt when it does not say. Throws CaptureError when
+/// it does not answer.
+std::optional<ExposureRange> exposure_range(const V4l2Device& device);
 
 }  // namespace bole

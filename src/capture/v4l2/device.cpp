@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/errors.h"
 #include "capture/frame_source.h"
 
 namespace bole {
@@ -53,8 +54,9 @@ bool is_first_node(const fs::path& node) {
 
 }  // namespace
 
-V4l2Device::V4l2Device(const fs::path& path)
-    : fd_(::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC)) {
+V4l2Device::V4l2Device(const fs::path& path, std::function<void()> before_asking)
+    : fd_(::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC)),
+      before_asking_(std::move(before_asking)) {
   if (fd_) return;
   const int error = errno;
   std::string hint;
@@ -70,9 +72,16 @@ int V4l2Device::call(unsigned long request, void* argument) const noexcept {
   return result < 0 ? errno : 0;
 }
 
+int V4l2Device::ask(unsigned long request, void* argument) const {
+  if (before_asking_) before_asking_();
+  const int error = call(request, argument);
+  if (error == ETIMEDOUT) throw CaptureError("does not answer");
+  return error;
+}
+
 v4l2_capability V4l2Device::capability() const {
   v4l2_capability capability{};
-  const int error = call(VIDIOC_QUERYCAP, &capability);
+  const int error = ask(VIDIOC_QUERYCAP, &capability);
   if (error != 0) throw CaptureError("is no Video4Linux device: " + error_text(error));
   return capability;
 }
@@ -87,8 +96,6 @@ v4l2_buf_type V4l2Device::capture_type() const {
   }
   throw CaptureError("gives no stream of video frames");
 }
-
-std::string error_text(int error) { return std::generic_category().message(error); }
 
 fs::path find_v4l2_device(const std::string& name) {
   std::error_code error;

@@ -3,6 +3,7 @@
 #include <linux/videodev2.h>
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,11 +15,16 @@ namespace bole {
 class V4l2Device {
  public:
   V4l2Device() = default;
-  /// Opens it for non-blocking use. Throws CaptureError with the reason.
-  explicit V4l2Device(const std::filesystem::path& path);
+  /// Opens it for non-blocking use; each ask() calls `before_asking`. Throws CaptureError with the
+  /// reason.
+  explicit V4l2Device(const std::filesystem::path& path, std::function<void()> before_asking = {});
 
   /// One ioctl, repeated when a signal interrupts it. 0, or errno.
   int call(unsigned long request, void* argument) const noexcept;
+  /// call() while the camera is being opened. Throws CaptureError when it does not answer, since
+  /// that takes the kernel seconds to find out and would be the same for the next question; and
+  /// what `before_asking` throws.
+  int ask(unsigned long request, void* argument) const;
   int fd() const { return fd_.get(); }
   void close() { fd_.reset(); }
 
@@ -30,10 +36,8 @@ class V4l2Device {
 
  private:
   UniqueFd fd_;
+  std::function<void()> before_asking_;
 };
-
-/// errno in words.
-std::string error_text(int error);
 
 /// The node of the camera called `name`, resolved anew at each call: a path (best one below
 /// /dev/v4l/by-id or /dev/v4l/by-path, which stays the same over replugs), a name in one of these

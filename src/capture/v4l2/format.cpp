@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/errors.h"
 #include "capture/frame_source.h"
 
 namespace bole {
@@ -33,10 +34,6 @@ constexpr std::array kKnownFormats = {
 };
 
 bool is_multiplanar(v4l2_buf_type type) { return type == V4L2_BUF_TYPE_VIDEO_CAPTURE_MPLANE; }
-
-std::string shown(ImageSize size) {
-  return std::to_string(size.width) + " x " + std::to_string(size.height);
-}
 
 v4l2_format wish(v4l2_buf_type type, std::uint32_t fourcc, ImageSize size) {
   v4l2_format format{};
@@ -92,11 +89,11 @@ std::chrono::nanoseconds negotiate_rate(const V4l2Device& device, v4l2_buf_type 
                                         double rate_hz) {
   v4l2_streamparm parameters{};
   parameters.type = type;
-  if (device.call(VIDIOC_G_PARM, &parameters) != 0) return std::chrono::nanoseconds(0);
+  if (device.ask(VIDIOC_G_PARM, &parameters) != 0) return std::chrono::nanoseconds(0);
   v4l2_captureparm& capture = parameters.parm.capture;
   if (rate_hz > 0 && (capture.capability & V4L2_CAP_TIMEPERFRAME) != 0) {
     capture.timeperframe = {1000, static_cast<__u32>(std::llround(1000 * rate_hz))};
-    if (device.call(VIDIOC_S_PARM, &parameters) != 0) device.call(VIDIOC_G_PARM, &parameters);
+    if (device.ask(VIDIOC_S_PARM, &parameters) != 0) device.ask(VIDIOC_G_PARM, &parameters);
   }
   return period_of(capture.timeperframe);
 }
@@ -106,7 +103,7 @@ std::optional<V4l2Format> try_format(const V4l2Device& device, v4l2_buf_type typ
                                      std::uint32_t fourcc, const CameraSettings& settings,
                                      std::string& offered) {
   v4l2_format driver = wish(type, fourcc, settings.size);
-  const int error = device.call(VIDIOC_S_FMT, &driver);
+  const int error = device.ask(VIDIOC_S_FMT, &driver);
   if (error == EBUSY) throw CaptureError("is in use by another program");
   if (error != 0) {
     offered = fourcc_text(fourcc) + " is refused: " + error_text(error);
@@ -168,7 +165,7 @@ std::vector<std::uint32_t> list_formats(const V4l2Device& device, v4l2_buf_type 
   std::vector<std::uint32_t> fourccs;
   v4l2_fmtdesc description{};
   description.type = type;
-  while (device.call(VIDIOC_ENUM_FMT, &description) == 0) {
+  while (device.ask(VIDIOC_ENUM_FMT, &description) == 0) {
     if (pixel_format_of(description.pixelformat)) fourccs.push_back(description.pixelformat);
     ++description.index;
   }

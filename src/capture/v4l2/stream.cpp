@@ -6,6 +6,8 @@
 #include <cerrno>
 #include <utility>
 
+#include "base/errors.h"
+
 namespace bole {
 namespace {
 
@@ -40,7 +42,7 @@ V4l2Buffers::V4l2Buffers(V4l2Device device, const V4l2Format& format, int wanted
       if (const int refused = queue(i)) fail("takes no buffer", refused);
     }
     int type = format_.type;
-    if (const int refused = device_.call(VIDIOC_STREAMON, &type)) fail("does not start", refused);
+    if (const int refused = device_.ask(VIDIOC_STREAMON, &type)) fail("does not start", refused);
   } catch (...) {
     unmap();
     throw;
@@ -69,7 +71,7 @@ v4l2_buffer V4l2Buffers::describe(int index,
 void V4l2Buffers::map(int index) {
   std::array<v4l2_plane, VIDEO_MAX_PLANES> planes{};
   v4l2_buffer buffer = describe(index, planes);
-  if (const int error = device_.call(VIDIOC_QUERYBUF, &buffer)) fail("describes no buffer", error);
+  if (const int error = device_.ask(VIDIOC_QUERYBUF, &buffer)) fail("describes no buffer", error);
   Mapping& mapping = mappings_.emplace_back();
   for (int plane = 0; plane < format_.layout.memory_planes; ++plane) {
     const auto at = static_cast<std::size_t>(plane);

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <cmath>
 #include <utility>
 
+#include "base/errors.h"
 #include "base/wakeup.h"
 #include "capture/sequence_count.h"
 #include "capture/v4l2/controls.h"
@@ -17,8 +17,6 @@
 
 namespace bole {
 namespace {
-
-constexpr double kNotMetered = -1;
 
 class V4l2Source final : public FrameSource {
  public:
@@ -33,18 +31,17 @@ class V4l2Source final : public FrameSource {
   void close() noexcept override {
     if (buffers_) buffers_->stop();
     buffers_.reset();
-    exposure_.reset();
+    metering_.stop();
   }
   void interrupt() noexcept override { interrupted_.raise(); }
   std::chrono::nanoseconds frame_period() const override { return format_.period; }
   std::string description() const override { return description_; }
   std::vector<std::string> refused() const override { return refused_; }
-  void metered(double mean) noexcept override { mean_ = mean; }
+  void metered(double mean) noexcept override { metering_.tell(mean); }
 
  private:
   void start();
   void describe(const v4l2_capability& capability);
-  void expose();
   short wait(std::int64_t timeout_ns) const;
   void drain(Grab& grab);
   void take(const v4l2_buffer& buffer, const ImageView& image, Grab& grab);
@@ -58,8 +55,7 @@ class V4l2Source final : public FrameSource {
   V4l2Format format_;
   std::shared_ptr<V4l2Buffers> buffers_;
   SequenceCount sequence_;
-  std::optional<ExposureController> exposure_;
-  std::atomic<double> mean_ = kNotMetered;
+  Metering metering_;
   std::string description_;
   std::vector<std::string> refused_;
 };
@@ -73,20 +69,13 @@ void V4l2Source::open() {
 }
 
 void V4l2Source::start() {
-  V4l2Device device(find_v4l2_device(name_));
+  V4l2Device device(find_v4l2_device(name_), [this] { step(interrupted_); });
   const v4l2_capability capability = device.capability();
   format_ = negotiate_format(device, settings_);
   refused_ = apply_controls(device, settings_);
-  const ExposureRange range = exposure_range(device);
-  if (settings_.exposure == CameraSettings::Exposure::metered && range.max_us > 0) {
-    // An exposure longer than a frame would cost frames.
-    const auto period_us = static_cast<int>(format_.period.count() / 1000);
-    exposure_.emplace(
-        ExposureRange{range.min_us,
-                      period_us > range.min_us ? std::min(range.max_us, period_us) : range.max_us},
-        settings_.exposure_us);
-  }
-  mean_ = kNotMetered;
+  std::string unmetered = metering_.start(settings_, exposure_range(device));
+  if (!unmetered.empty()) refused_.push_back(std::move(unmetered));
+  metering_.hold_below(format_.period);
   sequence_ = {};
   buffers_ = std::make_shared<V4l2Buffers>(std::move(device), format_, settings_.buffers);
   describe(capability);
@@ -102,17 +91,8 @@ void V4l2Source::describe(const v4l2_capability& capability) {
            " Hz";
   }
   description_ = name_ + " (" + text(capability.card) + ", " + text(capability.driver) + "), " +
-                 fourcc_text(format_.fourcc) + " " + std::to_string(format_.layout.size.width) +
-                 " x " + std::to_string(format_.layout.size.height) + " at " + rate + ", " +
-                 std::to_string(buffers_->count()) + " buffers";
-}
-
-// Sets the exposure that the last brightness told of calls for.
-void V4l2Source::expose() {
-  const double mean = mean_.exchange(kNotMetered);
-  if (!exposure_ || mean == kNotMetered) return;
-  const std::optional<int> exposure_us = exposure_->update(mean);
-  if (exposure_us) set_exposure(buffers_->device(), *exposure_us);
+                 fourcc_text(format_.fourcc) + " " + shown(format_.layout.size) + " at " + rate +
+                 ", " + std::to_string(buffers_->count()) + " buffers";
 }
 
 // What poll() tells of the camera; POLLNVAL stands for an interruption, 0 for a timeout.
@@ -127,7 +107,9 @@ short V4l2Source::wait(std::int64_t timeout_ns) const {
 }
 
 Grab V4l2Source::grab(std::chrono::nanoseconds timeout) {
-  expose();
+  if (const std::optional<int> exposure_us = metering_.due()) {
+    set_exposure(buffers_->device(), *exposure_us);
+  }
   const std::int64_t deadline_ns = clock_.mono_ns() + timeout.count();
   Grab grab;
   do {
@@ -138,8 +120,7 @@ Grab V4l2Source::grab(std::chrono::nanoseconds timeout) {
     } else if (told != 0) {
       drain(grab);
       if (grab.kind == Grab::Kind::timeout && (told & (POLLERR | POLLHUP)) != 0) {
-        grab.kind = Grab::Kind::lost;
-        grab.reason = "reports an error" + in_brackets(name_);
+        grab.lose("reports an error" + in_brackets(name_));
       }
     }
   } while (grab.kind == Grab::Kind::timeout && clock_.mono_ns() < deadline_ns);
@@ -161,27 +142,20 @@ void V4l2Source::drain(Grab& grab) {
     }
   }
   if (error == EAGAIN) return;
-  // What else was fetched is of a camera that is gone.
-  grab.frame = Frame();
-  grab.kind = Grab::Kind::lost;
-  grab.reason = (error == ENODEV ? kNotThere : "failed: " + error_text(error)) + in_brackets(name_);
+  grab.lose((error == ENODEV ? kNotThere : "failed: " + error_text(error)) + in_brackets(name_));
 }
 
 void V4l2Source::take(const v4l2_buffer& buffer, const ImageView& image, Grab& grab) {
   const V4l2Stamp read = read_stamp(buffer, clock_.mono_ns(), clock_.utc_us() * 1000);
-  if (grab.frame) ++grab.drops[DropCause::superseded];
-  grab.stamps_corrected += read.corrected ? 1 : 0;
-  grab.kind = Grab::Kind::frame;
-  grab.frame = Frame(image, read.stamp, sequence_.extend(buffer.sequence), buffers_,
-                     static_cast<int>(buffer.index));
+  grab.take(Frame(image, read.stamp, sequence_.extend(buffer.sequence), buffers_,
+                  static_cast<int>(buffer.index)),
+            read.corrected);
 }
 
 void V4l2Source::refuse(const v4l2_buffer& buffer, DropCause cause, std::string reason,
                         Grab& grab) {
   sequence_.extend(buffer.sequence);
-  ++grab.drops[cause];
-  grab.reason = std::move(reason);
-  if (grab.kind == Grab::Kind::timeout) grab.kind = Grab::Kind::bad_frame;
+  grab.refuse(cause, std::move(reason));
   buffers_->give_back(static_cast<int>(buffer.index));
 }
 

@@ -49,6 +49,7 @@ void Camera::Connection::receive(VideoFunction& function) {
     if (submit.endpoint == kVideoEndpoint && submit.device_to_host) {
       stream.submit(std::move(submit));
     } else if (submit.endpoint == 0) {
+      if (function.ignores(submit.setup)) continue;
       auto answer = function.control_transfer(submit.setup, submit.data, stream);
       if (answer && answer->size() > submit.length) answer->resize(submit.length);
       stream.answer_control(submit, answer ? 0 : -EPIPE, answer.value_or(Bytes{}));

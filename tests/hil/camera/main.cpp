@@ -11,7 +11,10 @@
 //   step N                   N more frames, then freeze
 //   shorten N | mark N       cut the next N frames in half | set their error bit
 //   refuse NAME | accept NAME    answer attempts to set the control with a STALL | or no longer
+//   hesitate MS              answer requests of controls only after so many milliseconds
+//   mute | answer            answer no request of a control | or do (the default)
 #include <charconv>
+#include <chrono>
 #include <iostream>
 #include <sstream>
 #include <stdexcept>
@@ -93,6 +96,10 @@ void obey(const std::string& line, hil::Camera& camera, hil::VideoFunction& func
     camera.change_faults([&](Faults& faults) { faults.frames_to_shorten = parse_number(operand); });
   } else if (command == "mark") {
     camera.change_faults([&](Faults& faults) { faults.frames_to_mark = parse_number(operand); });
+  } else if (command == "hesitate") {
+    function.hesitate(std::chrono::milliseconds(parse_number(operand)));
+  } else if (command == "mute" || command == "answer") {
+    function.mute(command == "mute");
   } else if (command == "refuse" || command == "accept") {
     if (!function.refuse_control(operand, command == "refuse")) {
       throw std::runtime_error("no such control: " + operand);

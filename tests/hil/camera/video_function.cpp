@@ -1,6 +1,7 @@
 #include "video_function.h"
 
 #include <algorithm>
+#include <thread>
 #include <utility>
 
 #include "events.h"
@@ -60,6 +61,11 @@ std::optional<Bytes> VideoFunction::control_transfer(const std::array<uint8_t, 8
   if (!setup.is_class()) return std::nullopt;
   if (setup.interface() == kStreamingInterface) return streaming_request(setup, data, stream);
   return entity_request(setup, data);
+}
+
+bool VideoFunction::ignores(const std::array<uint8_t, 8>& packet) const {
+  const Setup setup(packet);
+  return mute_ && setup.is_class() && setup.interface() != kStreamingInterface;
 }
 
 bool VideoFunction::refuse_control(std::string_view name, bool refused) {
@@ -148,6 +154,7 @@ std::optional<Bytes> VideoFunction::entity_request(const Setup& setup,
     if (setup.selector() != uvc::kRequestErrorCodeControl) return std::nullopt;
     return ByteWriter().u8({uvc::kErrorInvalidRequest}).take();
   }
+  std::this_thread::sleep_for(delay_.load());
   const std::lock_guard lock(controls_mutex_);
   Control* control = controls_.find(setup.entity(), setup.selector());
   if (control == nullptr) return std::nullopt;

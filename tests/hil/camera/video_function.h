@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <atomic>
+#include <chrono>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -29,6 +31,13 @@ class VideoFunction {
   /// no such control.
   bool refuse_control(std::string_view name, bool refused);
 
+  /// From now on each request of a control is answered so much later.
+  void hesitate(std::chrono::milliseconds delay) { delay_ = delay; }
+  /// From now on requests of controls get no answer at all, or do.
+  void mute(bool mute) { mute_ = mute; }
+  /// Whether this request gets no answer.
+  bool ignores(const std::array<uint8_t, 8>& setup) const;
+
  private:
   struct Setup;
   // The video probe and commit controls' fields that matter here (UVC 1.1 table 4-75).
@@ -52,6 +61,8 @@ class VideoFunction {
   const std::vector<unsigned> rates_;
   Negotiation probe_;
   Negotiation commit_;
+  std::atomic<std::chrono::milliseconds> delay_{std::chrono::milliseconds(0)};
+  std::atomic<bool> mute_ = false;
   std::mutex controls_mutex_;  // commands come on another thread than requests
   Controls controls_;
 };

@@ -30,9 +30,7 @@ def run():
             recovers_by_itself(camera, listener)
         finally:
             seconds["stop"] = timed(lambda: systemctl("stop", "boled"))
-            journal = subprocess.run(["journalctl", "-u", "boled", "-o", "short-monotonic"],
-                                     capture_output=True, text=True, check=True).stdout
-            (environment.scenario_directory() / "journal").write_text(journal)
+            keep_journal()
         expect(show("Result"), "success", "the service's result after an orderly stop")
     return ", ".join(f"{what} {duration:.1f} s" for what, duration in seconds.items())
 
@@ -51,11 +49,11 @@ def install():
     systemctl("daemon-reload")
 
 
-def configure(camera):
-    """By the name that our udev rule gives."""
+def configure(camera, settings=""):
+    """By the name that our udev rule gives; `settings` stand below [source]."""
     shutil.copytree(camera_file(SIZE).parent, "/etc/bole/camera", dirs_exist_ok=True)
     pathlib.Path("/etc/bole/boled.toml").write_text(
-        f'[source]\nuri = "v4l2:/dev/bole/serial/{camera.serial}"\n')
+        f'[source]\nuri = "v4l2:/dev/bole/serial/{camera.serial}"\n{settings}')
 
 
 def restarted_after(signal, listener):
@@ -85,6 +83,12 @@ def recovers_by_itself(camera, listener):
     listener.wait_for_new_list(30)
     expect(show("MainPID"), before, "the service's process")
     assert "streaming" in show("StatusText"), show("StatusText")
+
+
+def keep_journal():
+    journal = subprocess.run(["journalctl", "-u", "boled", "-o", "short-monotonic"],
+                             capture_output=True, text=True, check=True).stdout
+    (environment.scenario_directory() / "journal").write_text(journal)
 
 
 def systemctl(*words):

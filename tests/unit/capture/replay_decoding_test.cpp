@@ -95,6 +95,25 @@ TEST(ReplayImages, OfAnotherSizeOrDamagedAreBad) {
                                     HasSubstr("4.png: is a damaged PNG image: cut short")));
 }
 
+TEST(ReplayImages, AsJpegMayHaveAFewBytesTooManyAtTheirEnd) {
+  const TemporaryFolder folder;
+  const std::string plain = (folder / "0.jpg").string();
+  cv::imwrite(plain, picture(40, 30));
+  std::vector<unsigned char> bytes;
+  cv::imencode(".jpg", picture(40, 30), bytes);
+  for (const std::size_t padding : {1, 2, 4, 16, 1000}) {
+    std::string file(bytes.begin(), bytes.end());
+    file.insert(file.size() - 2, padding, '\0');
+    folder.write(std::to_string(padding) + ".jpg", file);
+  }
+  ReplayOptions options = options_for(folder.path());
+  options.size = {40, 30};
+  const Replayed seen = replay(options);
+  EXPECT_THAT(files_of(seen), ElementsAre("0.jpg", "1.jpg", "16.jpg", "2.jpg", "4.jpg"));
+  EXPECT_THAT(seen.bad, ElementsAre(HasSubstr("1000.jpg: is a damaged JPEG")));
+  for (const Seen& frame : seen.frames) EXPECT_TRUE(frame.bytes == seen.frames[0].bytes);
+}
+
 TEST(ReplayImages, AsPngDamagedInsideAreToldByUsAlone) {
   const TemporaryFolder folder;
   for (const char* name : {"0.png", "1.png"}) {

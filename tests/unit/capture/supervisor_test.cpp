@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <array>
 #include <deque>
+#include <functional>
 #include <thread>
 #include <vector>
 
@@ -24,6 +26,11 @@ class ScriptedCamera : public FrameSource {
   explicit ScriptedCamera(ReplayClock& clock) : clock_(clock) {}
 
   void open() override {
+    for (int i = 0; i < steps; ++i) {
+      clock_.advance_to(clock_.mono_ns() + 2000 * kMs);
+      if (at_step) at_step(i);
+      step(interrupted);
+    }
     ++opened;
     opened_at_ms.push_back(clock_.mono_ns() / kMs);
     if (!absent.empty()) throw CaptureError(absent);
@@ -45,7 +52,7 @@ class ScriptedCamera : public FrameSource {
     is_open = false;
     ++closed;
   }
-  void interrupt() noexcept override {}
+  void interrupt() noexcept override { interrupted.raise(); }
   std::chrono::nanoseconds frame_period() const override { return period; }
   std::string description() const override { return "scripted camera"; }
 
@@ -75,6 +82,9 @@ class ScriptedCamera : public FrameSource {
   int opened = 0;
   int closed = 0;
   std::vector<std::int64_t> opened_at_ms;
+  int steps = 0;  // of open(), two seconds each
+  std::function<void(int step)> at_step;
+  Wakeup interrupted;
 
  private:
   ReplayClock& clock_;
@@ -99,6 +109,7 @@ class SupervisorTest : public testing::Test {
     return lines;
   }
 
+  std::int64_t seq = 0;
   ReplayClock clock;
   ScriptedCamera camera{clock};
   std::vector<CameraEvent> events;
@@ -117,10 +128,36 @@ TEST_F(SupervisorTest, TellsOpeningAndStreamingOnce) {
   EXPECT_EQ(supervisor.counts().frames, 3);
 }
 
+TEST_F(SupervisorTest, ASlowCameraIsToldToBeOpeningAndTellsOfEachStep) {
+  camera.steps = 5;
+  int told_of = 0;
+  camera.on_step([&] { ++told_of; });
+  camera.at_step = [&](int step) {
+    EXPECT_EQ(supervisor.state(), CameraState::opening);
+    EXPECT_EQ(told_of, step);
+  };
+  supervisor.next();
+  EXPECT_EQ(told_of, 5);
+  EXPECT_TRUE(camera.is_open);
+}
+
+TEST_F(SupervisorTest, AnInterruptionEndsASlowOpeningAndIsNoFailure) {
+  camera.steps = 5;
+  camera.at_step = [&](int step) {
+    if (step == 2) supervisor.interrupt();
+  };
+  EXPECT_EQ(supervisor.next().kind, Grab::Kind::timeout);
+  EXPECT_EQ(clock.mono_ns(), 3 * 2000 * kMs);
+  EXPECT_EQ(supervisor.next().kind, Grab::Kind::interrupted);
+  EXPECT_EQ(supervisor.counts().failed_opens, 0);
+  EXPECT_THAT(told(), ElementsAre("opening: waiting for the first frame"));
+}
+
 TEST_F(SupervisorTest, WaitsForACameraThatIsNotThereYet) {
   camera.absent = "/dev/v4l/by-id/x is not there";
   run_until(5000);
-  EXPECT_THAT(told(), ElementsAre("no camera: /dev/v4l/by-id/x is not there"));
+  EXPECT_THAT(told(), ElementsAre("opening: waiting for the first frame",
+                                  "no camera: /dev/v4l/by-id/x is not there"));
   EXPECT_EQ(supervisor.counts().failed_opens, camera.opened);
   for (std::size_t i = 1; i < camera.opened_at_ms.size(); ++i) {
     EXPECT_LE(camera.opened_at_ms[i] - camera.opened_at_ms[i - 1], 200) << "the back-off is capped";
@@ -139,11 +176,11 @@ TEST_F(SupervisorTest, TellsEachReasonOfAnOutageOnce) {
     camera.absent = "permission denied";
     run_until(1000 * (2 * i + 2));
   }
-  EXPECT_THAT(
-      told(),
-      ElementsAre("no camera: is not there", "no camera: permission denied",
-                  "no camera: is not there (again)", "no camera: permission denied (again)",
-                  "no camera: is not there (again)", "no camera: permission denied (again)"));
+  EXPECT_THAT(told(),
+              ElementsAre("opening: waiting for the first frame", "no camera: is not there",
+                          "no camera: permission denied", "no camera: is not there (again)",
+                          "no camera: permission denied (again)", "no camera: is not there (again)",
+                          "no camera: permission denied (again)"));
 }
 
 TEST_F(SupervisorTest, AnUnpluggedCameraIsClosedToldAtOnceAndOpenedAgain) {
@@ -156,8 +193,8 @@ TEST_F(SupervisorTest, AnUnpluggedCameraIsClosedToldAtOnceAndOpenedAgain) {
   run_script();
   EXPECT_THAT(told(),
               ElementsAre("opening: waiting for the first frame", "streaming: scripted camera",
-                          "no camera: unplugged", "opening: waiting for the first frame",
-                          "streaming: scripted camera"));
+                          "no camera: unplugged", "opening: waiting for the first frame (again)",
+                          "streaming: scripted camera (again)"));
   EXPECT_EQ(supervisor.counts().losses, 1);
   EXPECT_EQ(supervisor.counts().drops.total(), 0) << "a new count of the sensor is no gap";
 }
@@ -168,7 +205,61 @@ TEST_F(SupervisorTest, ACameraThatGoesAsSoonAsItIsOpenedIsTriedEverMoreSeldom) {
   run_script();
   EXPECT_GE(camera.opened_at_ms.back(), 17 * 200);
   EXPECT_FALSE(events.at(1).repeated);
-  for (std::size_t i = 2; i < events.size(); ++i) EXPECT_TRUE(events[i].repeated);
+  for (std::size_t i = 2; i < events.size(); ++i) {
+    EXPECT_EQ(events[i].repeated, events[i].times != 10) << i;
+  }
+}
+
+TEST_F(SupervisorTest, ACameraThatComesAndGoesIsToldEverMoreSeldomUntilItStreamsWell) {
+  const auto logged = [&] {
+    return std::ranges::count_if(events, [](const CameraEvent& event) { return !event.repeated; });
+  };
+  for (int i = 0; i < 200; ++i) {
+    camera.frames({0});
+    camera.other(Grab::Kind::lost, "unplugged");
+  }
+  run_script();
+  EXPECT_EQ(supervisor.counts().losses, 200);
+  EXPECT_EQ(logged(), 9) << "three states, each for the first, 10th and 100th time";
+
+  camera.frames({0});
+  run_script();
+  EXPECT_TRUE(events.back().repeated);
+  for (int i = 1; i <= 60; ++i) camera.frames({i});
+  run_script();
+  EXPECT_THAT(told().back(), "streaming: scripted camera") << "that it is over is told";
+  EXPECT_EQ(events.back().times, 201);
+
+  camera.other(Grab::Kind::lost, "unplugged");
+  run_script();
+  EXPECT_THAT(told().back(), "no camera: unplugged") << "a new outage";
+  EXPECT_EQ(events.back().times, 1);
+}
+
+TEST_F(SupervisorTest, FramesOfNoUseAreAStallUntilOneIsUsedAgain) {
+  const auto frames = [&](int count, const char* unusable) {
+    for (int i = 0; i < count; ++i) {
+      camera.frames({seq++});
+      supervisor.next();
+      supervisor.judged(unusable);
+    }
+  };
+  supervisor.next();
+  frames(3, "");
+  frames(4, "damaged JPEG");
+  frames(1, "");
+  EXPECT_EQ(supervisor.state(), CameraState::streaming) << "now and then one";
+  frames(15, "damaged JPEG");
+  EXPECT_THAT(told().back(), "stalled: no usable frame for 0.5 s: damaged JPEG");
+  frames(600, "damaged JPEG");
+  EXPECT_EQ(supervisor.state(), CameraState::stalled) << "also when restarted";
+  EXPECT_EQ(supervisor.counts().stalls, 1);
+  EXPECT_GE(supervisor.counts().restarts, 3);
+  EXPECT_LE(supervisor.counts().restarts, 6) << "it backs off";
+  EXPECT_EQ(events.size(), 3U);
+  frames(1, "");
+  frames(1, "");
+  EXPECT_EQ(supervisor.state(), CameraState::streaming);
 }
 
 TEST_F(SupervisorTest, StallsAreJudgedByTheFrameRate) {
@@ -253,6 +344,25 @@ TEST_F(SupervisorTest, EachStepTakesATickAtMost) {
     supervisor.next();
     EXPECT_LE(clock.mono_ns() - before_ns, 100 * kMs);
   }
+}
+
+TEST(SupervisorThreads, FramesAreJudgedInAnotherThanTheyAreTakenIn) {
+  ReplayClock clock;
+  ScriptedCamera camera(clock);
+  Supervisor supervisor(camera, clock, [](const CameraEvent&) {});
+  std::thread other([&] {
+    for (int i = 0; i < 1000; ++i) supervisor.judged("damaged JPEG");
+  });
+  for (int i = 0; i < 1000; ++i) {
+    camera.frames({i});
+    supervisor.next();
+  }
+  other.join();
+  for (int i = 0; i < 20; ++i) {
+    camera.frames({i});
+    supervisor.next();
+  }
+  EXPECT_EQ(supervisor.state(), CameraState::stalled);
 }
 
 TEST(SupervisorInterrupt, EndsTheWaitForACamera) {

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "capture/buffer_layout.h"
+#include "capture/frame_pool.h"
 #include "capture/sequence_count.h"
+#include "capture/v4l2/controls.h"
 #include "capture/v4l2/format.h"
 #include "capture/v4l2/stamp.h"
 #include "capture/v4l2/v4l2_source.h"
@@ -15,7 +17,9 @@
 namespace bole {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr std::int64_t kMonoNow = 5'000 * kSecond;
@@ -164,6 +168,58 @@ TEST(V4l2Source, TellsWhyACameraCannotBeOpened) {
   EXPECT_EQ(why_it_does_not_open("no-such-serial"), "is not there (no-such-serial)");
   EXPECT_THAT(why_it_does_not_open("/dev/null"), HasSubstr("is no Video4Linux device"));
   EXPECT_EQ(why_it_does_not_open(""), "is not there ()");
+}
+
+// /dev/null opens, but has no settings.
+TEST(V4l2Device, TellsBeforeEachQuestionAndCanBeStoppedThere) {
+  int questions = 0;
+  const V4l2Device device("/dev/null", [&] {
+    if (++questions == 3) throw CaptureError("interrupted");
+  });
+  CameraSettings settings;
+  settings.exposure = CameraSettings::Exposure::automatic;
+  settings.power_line = CameraSettings::PowerLine::off;
+  settings.white_balance = CameraSettings::WhiteBalance::automatic;
+  EXPECT_THROW(apply_controls(device, settings), CaptureError);
+  EXPECT_EQ(questions, 3);
+}
+
+TEST(V4l2Controls, ThatAreRefusedAreToldAsTheyWereAskedFor) {
+  const V4l2Device device("/dev/null");
+  CameraSettings settings;
+  settings.exposure = CameraSettings::Exposure::metered;
+  settings.white_balance = CameraSettings::WhiteBalance::automatic;
+  settings.power_line = CameraSettings::PowerLine::hz50;
+  EXPECT_THAT(
+      apply_controls(device, settings),
+      ElementsAre(StartsWith("exposure = \"metered\": "), StartsWith("exposure_us = 10000: "),
+                  StartsWith("white_balance = \"automatic\": "),
+                  StartsWith("power_line = \"50 Hz\": ")));
+}
+
+TEST(Grab, HoldsTheNewestGoodFrameAndCountsTheOthers) {
+  const auto pool = FramePool::make();
+  const auto frame = [&](std::int64_t seq) {
+    const int slot = pool->take();
+    pool->slot(slot).size = {1, 1};
+    pool->slot(slot).bytes.resize(1);
+    return pool->frame(slot, {}, seq);
+  };
+  Grab grab;
+  grab.refuse(DropCause::damaged, "damaged");
+  EXPECT_EQ(grab.kind, Grab::Kind::bad_frame);
+  grab.take(frame(1), true);
+  grab.take(frame(2), false);
+  grab.refuse(DropCause::too_short, "short");
+  EXPECT_EQ(grab.kind, Grab::Kind::frame);
+  EXPECT_EQ(grab.frame.sensor_seq(), 2);
+  EXPECT_EQ(grab.stamps_corrected, 1);
+  EXPECT_EQ(grab.drops[DropCause::superseded], 1);
+  EXPECT_EQ(grab.drops.total(), 3);
+  EXPECT_EQ(grab.reason, "short");
+  grab.lose("is not there");
+  EXPECT_EQ(grab.kind, Grab::Kind::lost);
+  EXPECT_FALSE(grab.frame);
 }
 
 }  // namespace

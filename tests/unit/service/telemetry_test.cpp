@@ -64,22 +64,6 @@ TEST(Telemetry, WhatFramesShowedGoesWithTheCamera) {
   EXPECT_FALSE(forgotten());
 }
 
-TEST(Telemetry, APlannerCanTellFramesThatAreOfNoUseFromStreaming) {
-  Telemetry telemetry("1.0", "front");
-  telemetry.capture_event({CameraState::streaming, "cam 640x480", false});
-  for (int k = 0; k < 4; ++k) telemetry.unusable("", "is cut short");
-  EXPECT_EQ(telemetry.status(0, false).state, status_t::STATE_STREAMING) << "now and then one";
-  telemetry.vision("dark");
-  telemetry.unusable("", "is cut short");
-  EXPECT_EQ(telemetry.status(0, false).state, status_t::STATE_STALLED);
-  EXPECT_EQ(telemetry.status(0, false).degraded, 0) << "nothing has been seen of late";
-  EXPECT_EQ(telemetry.status(0, false).state_reason, "no usable frame: frame: is cut short");
-  EXPECT_EQ(telemetry.status(0, true).state, status_t::STATE_STOPPING);
-  telemetry.processed(1'000'000, 0);
-  EXPECT_EQ(telemetry.status(0, false).state, status_t::STATE_STREAMING);
-  EXPECT_EQ(telemetry.status(0, false).state_reason, "");
-}
-
 TEST(Telemetry, DropsAreToldByCause) {
   Telemetry telemetry("1.0", "front");
   CaptureCounts counts;
