@@ -190,7 +190,8 @@ TEST(Fisheye, DamagedCalibrationsAreNamedByFileAndKey) {
               HasSubstr("distortion_coefficients: has 3 numbers; needs 4"));
   EXPECT_THAT(problem_of(with("-0.0009", "-0.0009, 1")), HasSubstr("distortion_coefficients"));
   EXPECT_THAT(problem_of(with("0.035", ".nan")), HasSubstr("distortion_coefficients: a number"));
-  EXPECT_THAT(problem_of(with("0.035", "oak")), HasSubstr("distortion_coefficients: cannot be read"));
+  EXPECT_THAT(problem_of(with("0.035", "oak")),
+              HasSubstr("distortion_coefficients: cannot be read"));
   EXPECT_THAT(problem_of(with("image_width: 1280", "image_width: wide")),
               HasSubstr("fisheye.yml: image_width: cannot be read"));
   EXPECT_THAT(problem_of(with("0.035", "1e300")), HasSubstr("distortion_coefficients: a number"));
