@@ -107,8 +107,7 @@ std::vector<MeasuredTree> parse_trees(const std::vector<std::string>& texts) {
 // Files and folders in their order, each file once: a frame that is given twice is no more evidence
 // than once.
 std::vector<fs::path> frames_of(const Options& options, const Camera& camera) {
-  const fs::path mask =
-      camera.config.mask.empty() ? fs::path() : camera.file.parent_path() / camera.config.mask;
+  const fs::path mask = mask_file(camera);
   std::vector<fs::path> frames;
   std::set<fs::path> known;
   for (const fs::path path : options.images) {

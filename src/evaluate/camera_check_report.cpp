@@ -25,8 +25,7 @@ Json json_of(const CameraCheck::NearestGround& ground) {
 std::string in_degrees(double angle, int digits = 0) { return fixed(degrees(angle), digits); }
 
 std::string optics_line(const CameraCheck& check) {
-  std::string line = check.model + ", " + std::to_string(check.image.width) + " x " +
-                     std::to_string(check.image.height) + " pixels, " +
+  std::string line = check.model + ", " + shown(check.image) + " pixels, " +
                      fixed(100 * check.masked, 0) + " % masked; pixel to ray and back " +
                      fixed(check.there_and_back.most_px, 4) + " px at most";
   if (check.inverse) {
@@ -38,9 +37,9 @@ std::string optics_line(const CameraCheck& check) {
 
 std::string panorama_line(const CameraCheck& check) {
   const PanoramaGeometry& p = check.panorama;
-  std::string line = std::to_string(p.width) + " x " + std::to_string(p.rows) + " pixels of " +
-                     std::to_string(p.columns) + " columns, " + fixed(100 * check.seen, 0) +
-                     " % of it seen, up to " + in_degrees(check.highest_seen) + " degrees";
+  std::string line = shown({p.width, p.rows}) + " pixels of " + std::to_string(p.columns) +
+                     " columns, " + fixed(100 * check.seen, 0) + " % of it seen, up to " +
+                     in_degrees(check.highest_seen) + " degrees";
   if (!p.wraps()) {
     line += ", bearings " + in_degrees(p.bearing_of_column(p.width - 0.5)) + " to " +
             in_degrees(p.bearing_of_column(-0.5));

@@ -97,10 +97,7 @@ ImageSize size_of(const Reader& reader, ImageSize said) {
   }
   const ImageSize size{reader.side("image_width"), reader.side("image_height")};
   if (said.width > 0 && said != size) {
-    reader.fail("image_width",
-                "is of " + std::to_string(size.width) + " x " + std::to_string(size.height) +
-                    " pixels, camera.toml of " + std::to_string(said.width) + " x " +
-                    std::to_string(said.height),
+    reader.fail("image_width", "is of " + shown(size) + " pixels, camera.toml of " + shown(said),
                 "calibrate at the size that is used, and leave width and height out");
   }
   return size;

@@ -1,7 +1,8 @@
 #include "publish/lcm_publisher.h"
 
 #include <cerrno>
-#include <system_error>
+
+#include "base/errors.h"
 
 namespace bole {
 
@@ -21,7 +22,7 @@ void LcmPublisher::publish(MessageKind kind, std::span<const std::byte> bytes,
   if (lcm_publish(lcm_.get(), channel, bytes.data(), static_cast<unsigned>(bytes.size())) != 0) {
     const int error = errno;
     lcm_.reset();
-    throw BusError("cannot send to " + url_.text() + ": " + std::generic_category().message(error));
+    throw BusError("cannot send to " + url_.text() + ": " + error_text(error));
   }
 }
 

@@ -6,7 +6,6 @@
 
 #include <cerrno>
 #include <regex>
-#include <system_error>
 
 #include "base/errors.h"
 #include "base/files.h"
@@ -60,7 +59,7 @@ std::string missing_route(const LcmUrl& url) {
   if (errno == ENETUNREACH) {
     return "no multicast route to " + url.address + "; ip route add 224.0.0.0/4 dev lo";
   }
-  return url.address + " cannot be reached: " + std::generic_category().message(errno);
+  return url.address + " cannot be reached: " + error_text(errno);
 }
 
 }  // namespace bole

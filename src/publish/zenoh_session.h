@@ -11,10 +11,14 @@
 
 namespace bole {
 
+/// Where a session listens that is told of no endpoint at all (zenoh_bridge/src/config.rs).
+inline constexpr const char* kDefaultZenohEndpoint = "tcp/127.0.0.1:7447";
+
 /// The `zenoh` table of the configuration. What is empty or absent is left to the file that
 /// `config_file` names, then to the defaults: no endpoint at all, a peer that listens on
-/// tcp/127.0.0.1:7447; endpoints to connect to only, a client; else a peer. Zenoh's routers carry
-/// data to and from clients, but not from peer to peer: peers must reach each other themselves.
+/// kDefaultZenohEndpoint; endpoints to connect to only, a client; else a peer. Zenoh's routers
+/// carry data to and from clients, but not from peer to peer: peers must reach each other
+/// themselves.
 struct ZenohConfig {
   std::string file;                  // where these settings stand, for messages only
   std::string mode;                  // peer, client or router

@@ -5,7 +5,6 @@
 #include <sys/resource.h>
 
 #include <cerrno>
-#include <cstring>
 #include <optional>
 #include <stdexcept>
 
@@ -13,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/clock.h"
+#include "base/errors.h"
 #include "service/make_publishers.h"
 #include "service/make_source.h"
 #include "service/pipeline.h"
@@ -34,7 +34,7 @@ CachedTable open_table(const DaemonConfig::CameraPart& part, const Camera& camer
 void lock_memory() {
   if (::mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
     spdlog::warn("service.lock_memory: {}; grant CAP_IPC_LOCK or raise LimitMEMLOCK",
-                 std::strerror(errno));
+                 error_text(errno));
   }
 }
 
@@ -43,7 +43,7 @@ void set_realtime_priority(int priority) {
   const sched_param parameters{priority};
   if (::sched_setscheduler(0, SCHED_FIFO, &parameters) != 0) {
     spdlog::warn("service.realtime_priority: {}; grant CAP_SYS_NICE or raise LimitRTPRIO",
-                 std::strerror(errno));
+                 error_text(errno));
   }
 }
 

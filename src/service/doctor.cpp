@@ -8,6 +8,7 @@
 #include <functional>
 #include <system_error>
 
+#include "base/errors.h"
 #include "capture/frame_source.h"
 #include "capture/libcamera/libcamera.h"
 #include "capture/v4l2/device.h"
@@ -99,7 +100,7 @@ std::string zenoh_detail(const ZenohConfig& config) {
 #ifdef BOLE_ZENOH
   check_zenoh(config);
   if (config.listen.empty() && config.connect.empty() && config.config_file.empty()) {
-    return "listens on tcp/127.0.0.1:7447, this machine only";
+    return std::string("listens on ") + kDefaultZenohEndpoint + ", this machine only";
   }
   return "its settings fit together";
 #else
@@ -117,8 +118,7 @@ std::string jsonl_detail(const std::filesystem::path& file) {
   }
   const auto folder = file.has_parent_path() ? file.parent_path() : ".";
   if (::access(there ? file.c_str() : folder.c_str(), W_OK) != 0) {
-    throw std::runtime_error(file.string() +
-                             " cannot be written: " + std::generic_category().message(errno));
+    throw std::runtime_error(file.string() + " cannot be written: " + error_text(errno));
   }
   return file.string();
 }

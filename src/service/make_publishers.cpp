@@ -41,7 +41,7 @@ std::string zenoh_address(const ZenohConfig& zenoh) {
   for (const std::string& endpoint : zenoh.listen) text += ", listens on " + endpoint;
   for (const std::string& endpoint : zenoh.connect) text += ", connects to " + endpoint;
   if (!zenoh.config_file.empty()) text += ", by " + zenoh.config_file;
-  if (text.empty()) text = ", listens on tcp/127.0.0.1:7447";
+  if (text.empty()) text = std::string(", listens on ") + kDefaultZenohEndpoint;
   return "zenoh (" + text.substr(2) + ")";
 }
 

@@ -17,7 +17,7 @@ SourceSetup make_replay(const DaemonConfig::SourcePart& part, const std::string&
   ReplayOptions options;
   options.path = path;
   options.size = camera.model->image_size();
-  if (!camera.config.mask.empty()) options.mask = camera.file.parent_path() / camera.config.mask;
+  options.mask = mask_file(camera);
   options.pace = parse_replay_pace(part.pace);
   options.loop = part.loop;
   options.start_s = part.start;

@@ -58,6 +58,11 @@ std::uint32_t digest_of(const Camera& camera) {
 
 }  // namespace
 
+std::filesystem::path mask_file(const Camera& camera) {
+  if (camera.config.mask.empty()) return {};
+  return camera.file.parent_path() / camera.config.mask;
+}
+
 Camera load_camera(const std::filesystem::path& camera_toml) {
   const std::filesystem::path folder = camera_toml.parent_path();
   Camera camera;
@@ -73,9 +78,8 @@ Camera load_camera(const std::filesystem::path& camera_toml) {
     camera.config.mount.pitch = pitch_of_horizon(camera, *camera.config.horizon_row);
   }
   remount(camera, camera.config.mount);
-  if (!camera.config.mask.empty()) {
-    camera.mask = read_mask(folder / camera.config.mask, camera.model->image_size());
-  }
+  const std::filesystem::path mask = mask_file(camera);
+  if (!mask.empty()) camera.mask = read_mask(mask, camera.model->image_size());
   camera.digest = digest_of(camera);
   return camera;
 }

@@ -25,6 +25,9 @@ struct Camera {
       0;  ///< CRC-32 over camera.toml, calibration and mask: what a table is bound to
 };
 
+/// The mask that camera.toml names; empty: none.
+std::filesystem::path mask_file(const Camera& camera);
+
 /// Reads camera.toml, the calibration and the mask, and checks that they fit each other. Throws
 /// ConfigError for whatever is missing, damaged or does not fit.
 Camera load_camera(const std::filesystem::path& camera_toml);

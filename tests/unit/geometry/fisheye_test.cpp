@@ -13,6 +13,7 @@
 #include "geometry/mount.h"
 #include "geometry/ocam.h"
 #include "unit/geometry/opencv_yaml.h"
+#include "unit/geometry/same_world.h"
 
 namespace bole {
 namespace {
@@ -137,29 +138,10 @@ OcamModel equidistant_ocam() {
 }
 
 TEST(Fisheye, SeesTheWorldAsTheSameCameraDoesInOcamCalibsForm) {
-  const FisheyeModel fisheye = equidistant();
-  const OcamModel ocam = equidistant_ocam();
   for (const ImageSide left : {ImageSide::left, ImageSide::right}) {
-    for (const bool down : {true, false}) {
-      const Mount mount{.forward = ImageSide::down,
-                        .left = left,
-                        .centre_looks_down = down,
-                        .roll = 0.03,
-                        .pitch = -0.05,
-                        .yaw = 0.4};
-      for (double row = 0; row < 960; row += 53) {
-        for (double column = 200; column < 1100; column += 47) {
-          const Vec3 a = robot_from_omni_camera(mount) * ocam.ray_from_pixel({row, column});
-          const Vec3 b =
-              robot_from_omni_opencv_camera(mount) * fisheye.ray_from_pixel({row, column});
-          // The series is cut off: at 100 degrees it is good to 1e-5.
-          if (std::hypot(row - 470, column - 650) > 300 * radians(100)) continue;
-          ASSERT_NEAR(a.x, b.x, 2e-5);
-          ASSERT_NEAR(a.y, b.y, 2e-5);
-          ASSERT_NEAR(a.z, b.z, 2e-5);
-        }
-      }
-    }
+    // The series is cut off: at 100 degrees it is good to 1e-5.
+    expect_same_world(equidistant(), equidistant_ocam(), ImageSide::down, left, 300 * radians(100),
+                      2e-5);
   }
 }
 
