@@ -21,11 +21,6 @@ constexpr int kTall = 48;              // bands
 
 }  // namespace
 
-float foot_unit(const TrunkShape& shape, double focal) {
-  const float scale = static_cast<float>(focal) / kReferenceFocal;
-  return std::clamp(0.12F * shape.width(), 0.8F * scale, 5.0F * scale);
-}
-
 FeatureReader::FeatureReader(const DetectorSetup& setup)
     : last_band_(setup.panorama.rows / Bands::kRows),
       wraps_(setup.panorama.wraps()),

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "detect/bands.h"
+#include "detect/foot_patch.h"
 #include "detect/trunk_shape.h"
 
 namespace bole {
@@ -27,9 +28,6 @@ struct TrunkFeatures {
   using Values = std::array<float, kCount>;
 };
 
-/// The unit of a foot's shift: what the fine rows are apart.
-float foot_unit(const TrunkShape& shape, double focal);
-
 struct RowLevels;
 
 class FeatureReader {
@@ -42,6 +40,9 @@ class FeatureReader {
   /// contrast as they are.
   void glance(const Bands& bands, const TrunkShape& shape, const EdgeFit& fit, int first_band,
               TrunkFeatures::Values& out) const;
+  FootPatch::Values foot_patch(const PanoramaView& panorama, const TrunkShape& shape) const {
+    return read_foot_patch(panorama, wraps_, log_.data(), shape, focal_);
+  }
 
  private:
   enum class Care { glance, full };

@@ -5,12 +5,14 @@
 
 #include "detect/close_look.h"
 #include "detect/dense_layer.h"
+#include "detect/last_look.h"
 #include "geometry/ground.h"
 
 namespace bole {
 namespace {
 
 constexpr float kWorthAnswering = -3.5F;  // logit
+constexpr float kWorthLocating = -3.5F;   // logit
 constexpr float kFarBetter = 3.0F;        // of two logits: the second look seldom turns them round
 constexpr float kSure = 2.0F;             // logit
 constexpr float kExpectation = 2.0F;      // logit that rivals must be better by
@@ -113,6 +115,7 @@ std::span<Trunk> TrunkFinder::find(const PanoramaView& panorama,
   look_at_other_feet(panorama);
   look_where_expected(panorama, expected);
   suppress(panorama);
+  look_last(panorama);
   return kept_;
 }
 
@@ -335,10 +338,26 @@ void TrunkFinder::suppress(const PanoramaView& panorama) {
   }
 }
 
-// Whether a close look may change what is told of a trunk that may be one of the searched.
+bool TrunkFinder::may_be_searched(const Trunk& trunk) const {
+  return trunk.shape.width() > narrowest_ && trunk.shape.foot > highest_foot_;
+}
+
+// Whether a close look may change what is told of a trunk.
 bool TrunkFinder::in_doubt(const Trunk& trunk) const {
-  return !trunk.seen_closely && std::abs(trunk.logit) < effort_.doubt &&
-         trunk.shape.width() > narrowest_ && trunk.shape.foot > highest_foot_;
+  return !trunk.seen_closely && std::abs(trunk.logit) < effort_.doubt && may_be_searched(trunk);
+}
+
+// Where exactly the trunks stand that are likely to be told of.
+void TrunkFinder::look_last(const PanoramaView& panorama) {
+  TrunkFeatures::Values features;
+  for (Trunk& trunk : kept_) {
+    if (trunk.logit < kWorthLocating || !may_be_searched(trunk) ||
+        !read(panorama, trunk.shape, trunk.fit, features))
+      continue;
+    Judgement judgement = locate(features, foot_patch(panorama, trunk.shape));
+    judgement.logit = trunk.logit;
+    settle(trunk, judgement);
+  }
 }
 
 }  // namespace bole

@@ -42,9 +42,9 @@ class TrunkFinder {
   explicit TrunkFinder(const DetectorSetup& setup);
 
   /// Trunks that are not out of the question, the better ones first, as to probability and width
-  /// before the close looks; valid until the next call. `expected`: outlines to try where no trunk
-  /// like them is found for sure, whatever the templates say; they go before others of the same
-  /// pixels.
+  /// before the close and the last looks; valid until the next call. `expected`: outlines to try
+  /// where no trunk like them is found for sure, whatever the templates say; they go before others
+  /// of the same pixels.
   std::span<Trunk> find(const PanoramaView& panorama, std::span<const Candidate> expected = {});
 
   /// The steps of find, for the training of the network.
@@ -65,6 +65,9 @@ class TrunkFinder {
   /// The same of what judge_at_a_glance is shown.
   [[nodiscard]] bool glance(const TrunkShape& shape, const EdgeFit& fit,
                             TrunkFeatures::Values& out) const;
+  FootPatch::Values foot_patch(const PanoramaView& panorama, const TrunkShape& shape) const {
+    return reader_.foot_patch(panorama, shape);
+  }
   /// Of the latest panorama that was searched.
   TrunkPatches patches(const TrunkShape& shape) const;
 
@@ -89,8 +92,10 @@ class TrunkFinder {
   bool has_outline(const TrunkShape& shape, const Candidate& outline) const;
   float whole_turns(float columns) const;
   void suppress(const PanoramaView& panorama);
+  bool may_be_searched(const Trunk& trunk) const;
   bool in_doubt(const Trunk& trunk) const;
   void look_closely(const PanoramaView& panorama, Trunk& trunk) const;
+  void look_last(const PanoramaView& panorama);
   bool same_pixels(const TrunkShape& a, const TrunkShape& b) const;
 
   int columns_;

@@ -66,6 +66,11 @@ TrunkShape ended_at(const TrunkShape& shape, float foot) {
   return ended;
 }
 
+float foot_unit(const TrunkShape& shape, double focal) {
+  const float scale = static_cast<float>(focal) / kReferenceFocal;
+  return std::clamp(0.12F * shape.width(), 0.8F * scale, 5.0F * scale);
+}
+
 EdgeFitter::EdgeFitter(const DetectorSetup& setup)
     : width_(setup.panorama.width),
       horizon_band_(

@@ -31,6 +31,9 @@ struct TrunkShape {
 /// The same edges, ended at another row.
 TrunkShape ended_at(const TrunkShape& shape, float foot);
 
+/// Rows: the unit of a foot's shift, and what the fine rows about a foot are apart.
+float foot_unit(const TrunkShape& shape, double focal);
+
 /// How well two lines describe a trunk's edges.
 struct EdgeFit {
   float contrast_left = 0, contrast_right = 0;  ///< mean clipped response along the line, at most 1

@@ -4,7 +4,8 @@
 // trunk: what it is mistaken in, it learns most from. Of each kHead + TrunkFeatures::kCount floats:
 // frame number, label (1 trunk, 0 none), shifts to the truth (see Judgement), weight, then the
 // features. Where LOOKS is `close` they are those that the network, as it was built in, leaves in
-// doubt, and a few others, and each is followed by the bytes of its TrunkPatches.
+// doubt, and a few others, and each is followed by the bytes of its TrunkPatches. Where it is
+// `last` they are trunks only, each followed by its FootPatch::Values.
 
 #include <algorithm>
 #include <array>
@@ -30,7 +31,7 @@ constexpr float kSecondLooks = 0.4F;    // share of them that is kept
 constexpr float kLeastDoubt = -5.5F, kMostDoubt = 4.5F;  // logit
 constexpr float kDoubtful = 0.2F, kClear = 0.02F;        // shares of them that are kept
 
-enum class Looks { first, second, close };
+enum class Looks { first, second, close, last };
 
 struct Label {
   float trunk = 0;  // 1, 0, or -1: neither, left out
@@ -104,6 +105,7 @@ class Dump {
     const Label here = label(shape);
     const bool trunk = here.trunk > 0;
     if (trunk) found_[here.which] = shape;
+    if (looks_ == Looks::last) return;
     const auto chance = static_cast<float>(trunk ? 1 : kept);
     if (random_.chance(chance)) put(shape, fit, 1 / chance);
     if (random_.chance(0.35F * chance)) {
@@ -125,7 +127,7 @@ class Dump {
     if (!finder_.read(frame_.view(), shape, fit, features)) return;
     finder_.refine(shape, fit);
     put(shape, fit, 1 / kSecondLooks);
-    if (looks_ != Looks::close || !finder_.read(frame_.view(), shape, fit, features)) return;
+    if (looks_ < Looks::close || !finder_.read(frame_.view(), shape, fit, features)) return;
     put(corrected(shape, judged(features), focal_), fit, 1 / kSecondLooks);
   }
 
@@ -184,7 +186,7 @@ class Dump {
 
   void put(const TrunkShape& shape, const EdgeFit& fit, float weight) {
     const Label here = label(shape);
-    if (here.trunk < 0) return;
+    if (here.trunk < 0 || (looks_ == Looks::last && here.trunk == 0)) return;
     TrunkFeatures::Values features;
     if (!finder_.read(frame_.view(), shape, fit, features)) return;
     // Weights stay: the close look is for the doubtful, let it dwell on them.
@@ -197,8 +199,12 @@ class Dump {
                                weight};
     std::fwrite(head, sizeof(float), kHead, out_);
     std::fwrite(features.data(), sizeof(float), features.size(), out_);
-    if (looks_ != Looks::close) return;
-    const TrunkPatches patches = finder_.patches(shape);
+    if (looks_ == Looks::close) put_bytes(finder_.patches(shape));
+    if (looks_ == Looks::last) put_bytes(finder_.foot_patch(frame_.view(), shape));
+  }
+
+  template <class Patches>
+  void put_bytes(const Patches& patches) {
     std::fwrite(&patches, 1, sizeof patches, out_);
   }
 
@@ -270,11 +276,13 @@ class Dump {
 
 int main(int count, char** arguments) {
   using bole::train::Looks;
-  const std::map<std::string_view, Looks> all{
-      {"first", Looks::first}, {"second", Looks::second}, {"close", Looks::close}};
+  const std::map<std::string_view, Looks> all{{"first", Looks::first},
+                                              {"second", Looks::second},
+                                              {"close", Looks::close},
+                                              {"last", Looks::last}};
   const auto looks = count < 4 ? all.end() : all.find(arguments[2]);
   if (looks == all.end()) {
-    std::fputs("usage: dump_candidates OUT first|second|close FRAME...\n", stderr);
+    std::fputs("usage: dump_candidates OUT first|second|close|last FRAME...\n", stderr);
     return 2;
   }
   std::FILE* out = std::fopen(arguments[1], "wb");

@@ -69,24 +69,23 @@ def rate(step, steps):
     return 1 + (LAST_RATE / RATE - 1) * fallen
 
 
-def train(head, z, hidden, mirror):
+def train(net, head, z, mirror, loss=loss, batch=BATCH, decay=DECAY, noise=NOISE):
     head, z, mirrored = map(torch.from_numpy, (head, z, MIRRORED_HEAD))
     source, sign = map(torch.from_numpy, mirror)
-    net = network(z.shape[1], hidden)
-    batches = len(z) // BATCH
+    batches = len(z) // batch
     steps = (EPOCHS + LAST_EPOCHS) * batches
     if steps <= WARM_UP:
         raise SystemExit(f"train.py: {len(z)} samples are too few: draw more frames")
-    optimiser = torch.optim.AdamW(net.parameters(), RATE, weight_decay=DECAY, fused=True)
+    optimiser = torch.optim.AdamW(net.parameters(), RATE, weight_decay=decay, fused=True)
     schedule = torch.optim.lr_scheduler.LambdaLR(optimiser, lambda step: rate(step, steps))
     for epoch in range(EPOCHS + LAST_EPOCHS):
-        noise = NOISE if epoch < EPOCHS else 0.0
-        for chosen in torch.randperm(len(z))[:batches * BATCH].view(batches, BATCH):
+        grain = noise if epoch < EPOCHS else 0.0
+        for chosen in torch.randperm(len(z))[:batches * batch].view(batches, batch):
             seen, truth = z[chosen].float(), head[chosen]
-            turned = torch.rand(BATCH) < 0.5
+            turned = torch.rand(batch) < 0.5
             seen[turned] = seen[turned][:, source] * sign
             truth[turned] *= mirrored
-            seen += noise * torch.randn_like(seen)
+            seen += grain * torch.randn_like(seen)
             optimiser.zero_grad()
             loss(net(seen), truth).backward()
             optimiser.step()
@@ -121,7 +120,8 @@ def fit(head, x, shown, mirror, hidden, path):
     tested = head[held_out], x[held_out]
     head, x = head[~held_out], x[~held_out]
     standardised = Standardised(shown(x[::8]), mirror)
-    net = train(weighed(head, x), standardised(shown(x)), hidden, mirror)
+    net = train(network(len(standardised.mean), hidden), weighed(head, x), standardised(shown(x)),
+                mirror)
     with torch.no_grad():
         out = net(torch.from_numpy(standardised(shown(tested[1]))).float())
     report(out.numpy(), tested[0])

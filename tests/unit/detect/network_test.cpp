@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "detect/close_look.h"
+#include "detect/last_look.h"
 #include "golden_file.h"
 
 namespace bole {
@@ -26,6 +27,13 @@ TrunkPatches some_patches() {
     patches.around[i] = static_cast<std::int8_t>(i * i % 67 - 33);
   }
   return patches;
+}
+
+FootPatch::Values some_foot() {
+  FootPatch::Values foot;
+  for (int i = 0; i < FootPatch::kCount; ++i)
+    foot[i] = std::sin(0.23F * static_cast<float>(i * i % 101));
+  return foot;
 }
 
 void expect_golden(const char* name, const Judgement& now, float tolerance = 5e-3F) {
@@ -55,6 +63,14 @@ TEST(Network, JudgesAsTheTrainedWeightsSay) {
 // As the trainer's own library computes it, without whole numbers: its script writes this file.
 TEST(Network, JudgesCloselyAsTheTrainerDoes) {
   expect_golden("detect/close_look.bin", judge_closely(some_features(), some_patches()), 0.03F);
+}
+
+TEST(Network, LocatesAsTheTrainerDoes) {
+  expect_golden("detect/last_look.bin", locate(some_features(), some_foot()), 0.03F);
+}
+
+TEST(Network, DoesNotSayWhetherItIsATrunkThatItLocates) {
+  EXPECT_EQ(locate(some_features(), some_foot()).logit, 0);
 }
 
 TEST(Network, SeesBothPatchesInACloseLook) {
