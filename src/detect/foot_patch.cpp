@@ -30,13 +30,18 @@ class Line {
     const std::uint8_t* const above = panorama.row(row);
     const std::uint8_t* const below = panorama.row(std::min(row + 1, rows - 1));
     const int count = std::min(static_cast<int>(last) + 1 - first_, kMostPixels);
-    sums_[0] = 0;
-    int column = wraps ? (first_ % width + width) % width : first_;
-    for (int i = 0; i < count; ++i, ++column) {
-      if (wraps && column == width) column = 0;
-      const int c = wraps ? column : std::clamp(column, 0, width - 1);
-      sums_[i + 1] = sums_[i] + above[c] * (kParts - low) + below[c] * low;
+    if (first_ >= 0 && first_ + count <= width) {
+      add_up(above + first_, below + first_, low, count);
+      return;
     }
+    std::array<std::uint8_t, kMostPixels> upper, lower;
+    for (int i = 0; i < count; ++i) {
+      const int column = first_ + i;
+      const int c = wraps ? (column % width + width) % width : std::clamp(column, 0, width - 1);
+      upper[i] = above[c];
+      lower[i] = below[c];
+    }
+    add_up(upper.data(), lower.data(), low, count);
   }
 
   // Of the grey levels from the first pixel to this column, times kParts.
@@ -49,6 +54,16 @@ class Line {
   }
 
  private:
+  void add_up(const std::uint8_t* above, const std::uint8_t* below, int low, int count) {
+    std::array<std::uint16_t, kMostPixels> levels;
+    std::transform(above, above + count, below, levels.begin(), [low](int a, int b) {
+      return static_cast<std::uint16_t>(kParts * a + low * (b - a));
+    });
+    sums_[0] = 0;
+    std::inclusive_scan(levels.begin(), levels.begin() + count, sums_.begin() + 1, std::plus<>(),
+                        0);
+  }
+
   int first_;
   std::array<int, kMostPixels + 1> sums_;
 };

@@ -10,8 +10,8 @@ namespace bole {
 /// The picture about a trunk's foot, in the trunk's own coordinates and finer than its features:
 /// how wide the roots spread, what grows before them, and where the trunk ends.
 struct FootPatch {
-  static constexpr int kRows = 32;    ///< half a foot_unit apart, half of them above the foot
-  static constexpr int kAcross = 12;  ///< strips a fifth of the trunk's width wide
+  static constexpr int kRows = 24;    ///< half a foot_unit apart, half of them above the foot
+  static constexpr int kAcross = 10;  ///< strips a fifth of the trunk's width wide
   static constexpr int kCount = kRows * kAcross;
 
   /// Row by row from the top: log brightness less that of the trunk's core above its foot, over the

@@ -12,7 +12,7 @@ namespace bole {
 namespace {
 
 constexpr float kWorthAnswering = -3.5F;  // logit
-constexpr float kWorthLocating = -3.5F;   // logit
+constexpr float kWorthLocating = -2.0F;   // logit
 constexpr float kFarBetter = 3.0F;        // of two logits: the second look seldom turns them round
 constexpr float kSure = 2.0F;             // logit
 constexpr float kExpectation = 2.0F;      // logit that rivals must be better by

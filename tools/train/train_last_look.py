@@ -23,7 +23,7 @@ from train import train, write
 PATCH_ROWS, PATCH_ACROSS = (int(constant(name, "src/detect/foot_patch.h"))
                             for name in ("kRows", "kAcross"))
 PATCH = PATCH_ROWS * PATCH_ACROSS
-FIRST, SECOND = 144, 48
+FIRST, SECOND = 96, 48
 BATCH, DECAY, NOISE = 1024, 1e-2, 0.15
 
 
