@@ -33,6 +33,7 @@ Effort Effort::for_reach(double range) {
   const auto between = [far](double low, double high) { return low + far * (high - low); };
   return {.candidates = static_cast<int>(between(150, 1400)),
           .close_looks = static_cast<int>(between(5, 150)),
+          .last_looks = static_cast<int>(between(10, 150)),
           .worth_other_feet = static_cast<float>(between(-5, -7.5)),
           .worth_a_second_look = static_cast<float>(between(-3, -5)),
           .doubt = static_cast<float>(between(2, 3.5))};
@@ -350,10 +351,13 @@ bool TrunkFinder::in_doubt(const Trunk& trunk) const {
 // Where exactly the trunks stand that are likely to be told of.
 void TrunkFinder::look_last(const PanoramaView& panorama) {
   TrunkFeatures::Values features;
+  int left = effort_.last_looks;
   for (Trunk& trunk : kept_) {
+    if (left == 0) return;
     if (trunk.logit < kWorthLocating || !may_be_searched(trunk) ||
         !read(panorama, trunk.shape, trunk.fit, features))
       continue;
+    --left;
     Judgement judgement = locate(features, foot_patch(panorama, trunk.shape));
     judgement.logit = trunk.logit;
     settle(trunk, judgement);

@@ -28,6 +28,7 @@ struct Trunk {
 struct Effort {
   int candidates = 0;          ///< at most
   int close_looks = 0;         ///< at most
+  int last_looks = 0;          ///< at most, the surest and widest first
   float worth_other_feet = 0;  ///< logit of a first look: with a wrong foot a trunk looks like none
   float worth_a_second_look = 0;  ///< logit of a first look
   float doubt = 0;                ///< logits up to this, of either sign, are worth a close look

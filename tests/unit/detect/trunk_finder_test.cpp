@@ -80,6 +80,7 @@ TEST(TrunkFinder, TakesMoreTimeTheFartherItSearches) {
   const Effort near = Effort::for_reach(8), far = Effort::for_reach(40);
   EXPECT_LT(near.candidates, far.candidates);
   EXPECT_LT(near.close_looks, far.close_looks);
+  EXPECT_LT(near.last_looks, far.last_looks);
   EXPECT_GT(near.worth_a_second_look, far.worth_a_second_look);
   EXPECT_EQ(Effort::for_reach(2).candidates, near.candidates);
   EXPECT_EQ(Effort::for_reach(100).candidates, far.candidates);
