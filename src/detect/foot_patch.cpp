@@ -74,6 +74,7 @@ FootPatch::Values read_foot_patch(const PanoramaView& panorama, bool wraps, cons
                                   const TrunkShape& shape, double focal) {
   const float step = 0.5F * foot_unit(shape, focal);
   const float strip = kStrip * std::min(shape.width(), (kMostPixels - 4) / (kStrip * kAcross));
+  const float quarters = 4.0F / (kParts * strip);  // of a grey level, of a sum over a strip
   FootPatch::Values values;
   for (int j = 0; j < kRows; ++j) {
     const float down = (static_cast<float>(j) - 0.5F * (kRows - 1)) * step;
@@ -82,7 +83,7 @@ FootPatch::Values read_foot_patch(const PanoramaView& panorama, bool wraps, cons
     float sum = line.sum_to(first);
     for (int k = 0; k < kAcross; ++k) {
       const float next = line.sum_to(first + static_cast<float>(k + 1) * strip);
-      const float level = (next - sum) * (4.0F / kParts) / strip;
+      const float level = (next - sum) * quarters;
       values[j * kAcross + k] = log[std::clamp(static_cast<int>(level), 0, kLevels - 1)];
       sum = next;
     }
@@ -93,7 +94,7 @@ FootPatch::Values read_foot_patch(const PanoramaView& panorama, bool wraps, cons
     const float* const first = &values[j * kAcross + (kAcross - kCore) / 2];
     core = std::accumulate(first, first + kCore, core);
   }
-  core /= kRows / 2 * kCore;
+  core /= float{kCore} * kRows / 2;
   const float mean = std::accumulate(values.begin(), values.end(), 0.0F) / FootPatch::kCount;
   const float squares = std::transform_reduce(values.begin(), values.end(), 0.0F, std::plus<>(),
                                               [&](float v) { return (v - mean) * (v - mean); });

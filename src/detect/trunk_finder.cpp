@@ -20,10 +20,17 @@ constexpr float kMostHidden = 0.6F;       // of a trunk's width, behind another 
 constexpr float kHopeless = -99;          // logit
 constexpr double kNarrower = 0.8;         // than any that is searched for, it may still be one
 constexpr double kFarther = 1.6;          // likewise, of where it stands on level ground
+constexpr double kLocatedFarther = 1.25;  // likewise, of what is worth a last look
 
 // Bounds of a frame's time, which dense woods searched to 40 m reach.
 constexpr int kMostSecondLooks = 500;         // of candidates, and again of other feet
 constexpr std::size_t kMostOtherFeet = 2000;  // that are glanced at
+
+// Of a foot on level ground so many times as far away as is searched.
+float foot_row(const DetectorSetup& setup, double farther) {
+  const double tangent = ground_tangent(farther * setup.search.range.high, setup.height);
+  return static_cast<float>(setup.panorama.row_of_tangent(tangent) + 0.5);
+}
 
 }  // namespace
 
@@ -31,9 +38,9 @@ Effort Effort::for_reach(double range) {
   constexpr double kShort = 8, kLong = 40;  // metres
   const double far = std::clamp((range - kShort) / (kLong - kShort), 0.0, 1.0);
   const auto between = [far](double low, double high) { return low + far * (high - low); };
-  return {.candidates = static_cast<int>(between(150, 1400)),
+  return {.candidates = static_cast<int>(between(130, 1400)),
           .close_looks = static_cast<int>(between(5, 150)),
-          .last_looks = static_cast<int>(between(10, 150)),
+          .last_looks = static_cast<int>(between(16, 150)),
           .worth_other_feet = static_cast<float>(between(-5, -7.5)),
           .worth_a_second_look = static_cast<float>(between(-3, -5)),
           .doubt = static_cast<float>(between(2, 3.5))};
@@ -45,9 +52,8 @@ TrunkFinder::TrunkFinder(const DetectorSetup& setup)
       focal_(setup.panorama.focal()),
       narrowest_(static_cast<float>(
           kNarrower * focal_ * angular_width(setup.search.diameter.low, setup.search.range.high))),
-      highest_foot_(static_cast<float>(setup.panorama.row_of_tangent(ground_tangent(
-                                           kFarther * setup.search.range.high, setup.height)) +
-                                       0.5)),
+      highest_foot_(foot_row(setup, kFarther)),
+      highest_located_(foot_row(setup, kLocatedFarther)),
       effort_(Effort::for_reach(setup.search.range.high)),
       bands_(setup, std::max(Templates::margin(setup), patch_reach(focal_))),
       templates_(setup, bands_, effort_.candidates),
@@ -339,13 +345,10 @@ void TrunkFinder::suppress(const PanoramaView& panorama) {
   }
 }
 
-bool TrunkFinder::may_be_searched(const Trunk& trunk) const {
-  return trunk.shape.width() > narrowest_ && trunk.shape.foot > highest_foot_;
-}
-
-// Whether a close look may change what is told of a trunk.
+// Whether a close look may change what is told of a trunk that may be one of the searched.
 bool TrunkFinder::in_doubt(const Trunk& trunk) const {
-  return !trunk.seen_closely && std::abs(trunk.logit) < effort_.doubt && may_be_searched(trunk);
+  return !trunk.seen_closely && std::abs(trunk.logit) < effort_.doubt &&
+         trunk.shape.width() > narrowest_ && trunk.shape.foot > highest_foot_;
 }
 
 // Where exactly the trunks stand that are likely to be told of.
@@ -354,8 +357,8 @@ void TrunkFinder::look_last(const PanoramaView& panorama) {
   int left = effort_.last_looks;
   for (Trunk& trunk : kept_) {
     if (left == 0) return;
-    if (trunk.logit < kWorthLocating || !may_be_searched(trunk) ||
-        !read(panorama, trunk.shape, trunk.fit, features))
+    if (trunk.logit < kWorthLocating || trunk.shape.width() < narrowest_ ||
+        trunk.shape.foot < highest_located_ || !read(panorama, trunk.shape, trunk.fit, features))
       continue;
     --left;
     Judgement judgement = locate(features, foot_patch(panorama, trunk.shape));

@@ -28,7 +28,7 @@ struct Trunk {
 struct Effort {
   int candidates = 0;          ///< at most
   int close_looks = 0;         ///< at most
-  int last_looks = 0;          ///< at most, the surest and widest first
+  int last_looks = 0;          ///< at most
   float worth_other_feet = 0;  ///< logit of a first look: with a wrong foot a trunk looks like none
   float worth_a_second_look = 0;  ///< logit of a first look
   float doubt = 0;                ///< logits up to this, of either sign, are worth a close look
@@ -93,7 +93,6 @@ class TrunkFinder {
   bool has_outline(const TrunkShape& shape, const Candidate& outline) const;
   float whole_turns(float columns) const;
   void suppress(const PanoramaView& panorama);
-  bool may_be_searched(const Trunk& trunk) const;
   bool in_doubt(const Trunk& trunk) const;
   void look_closely(const PanoramaView& panorama, Trunk& trunk) const;
   void look_last(const PanoramaView& panorama);
@@ -103,6 +102,7 @@ class TrunkFinder {
   bool wraps_;
   double focal_;
   float narrowest_, highest_foot_;  // of trunks that are searched for: columns, row
+  float highest_located_;           // the row of the highest foot that is worth a last look
   Effort effort_;
   Bands bands_;
   Templates templates_;
