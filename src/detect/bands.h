@@ -23,6 +23,8 @@ class Bands {
   static constexpr int kScale = 256;  ///< units of log brightness in 1
   static constexpr int kBlackLevel =
       8;  ///< grey levels added before the logarithm: noise counts less
+  /// Of log brightness: what differs less is shown to the networks as no stronger than that.
+  static constexpr float kLeastSpread = 0.06F;
   static constexpr int kMostColumns = 73;
   static constexpr int kMostFlank = 36;
   static constexpr int kCoarse = 32;  ///< columns between the whole sums

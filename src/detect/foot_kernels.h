@@ -6,6 +6,9 @@
 
 namespace bole {
 
+/// Entries of a table of log brightness by quarters of a grey level: enough for 255 and a little.
+inline constexpr int kLogLevels = 1024;
+
 /// The inner loops of FeatureReader about a trunk's foot, in whole vectors of whatever this
 /// processor has, and the plain loops that say what they must give: equal results.
 

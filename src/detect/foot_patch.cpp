@@ -6,16 +6,18 @@
 #include <functional>
 #include <numeric>
 
+#include "detect/bands.h"
+#include "detect/foot_kernels.h"
+
 namespace bole {
 namespace {
 
 constexpr int kRows = FootPatch::kRows, kAcross = FootPatch::kAcross;
-constexpr float kStrip = 0.2F;                    // of the trunk's width
-constexpr int kCore = 4;                          // strips
-constexpr float kLeastSpread = 0.06F, kMost = 4;  // of log brightness; of a value
-constexpr int kMostPixels = 2048;                 // of a row, that all strips cover
-constexpr int kLevels = 1024;                     // of `log`
-constexpr int kParts = 16;                        // of a row, that lines lie at
+constexpr float kStrip = 0.2F;     // of the trunk's width
+constexpr int kCore = 4;           // strips
+constexpr float kMost = 4;         // of a value
+constexpr int kMostPixels = 2048;  // of a row, that all strips cover
+constexpr int kParts = 16;         // of a row, that lines lie at
 
 // What the strips cover of the picture at one line across the trunk.
 class Line {
@@ -68,6 +70,22 @@ class Line {
   std::array<int, kMostPixels + 1> sums_;
 };
 
+// Turns log brightness into what the patch holds.
+void standardise_patch(FootPatch::Values& values, bool dark) {
+  float core = 0;
+  for (int j = 0; j < kRows / 2; ++j) {
+    const float* const first = &values[j * kAcross + (kAcross - kCore) / 2];
+    core = std::accumulate(first, first + kCore, core);
+  }
+  core /= float{kCore} * kRows / 2;
+  const float mean = std::accumulate(values.begin(), values.end(), 0.0F) / FootPatch::kCount;
+  const float squares = std::transform_reduce(values.begin(), values.end(), 0.0F, std::plus<>(),
+                                              [&](float v) { return (v - mean) * (v - mean); });
+  const float spread = std::sqrt(squares / FootPatch::kCount);
+  const float scale = (dark ? 1.0F : -1.0F) / std::max(spread, Bands::kLeastSpread);
+  for (float& value : values) value = std::clamp((value - core) * scale, -kMost, kMost);
+}
+
 }  // namespace
 
 FootPatch::Values read_foot_patch(const PanoramaView& panorama, bool wraps, const float* log,
@@ -84,23 +102,11 @@ FootPatch::Values read_foot_patch(const PanoramaView& panorama, bool wraps, cons
     for (int k = 0; k < kAcross; ++k) {
       const float next = line.sum_to(first + static_cast<float>(k + 1) * strip);
       const float level = (next - sum) * quarters;
-      values[j * kAcross + k] = log[std::clamp(static_cast<int>(level), 0, kLevels - 1)];
+      values[j * kAcross + k] = log[std::clamp(static_cast<int>(level), 0, kLogLevels - 1)];
       sum = next;
     }
   }
-
-  float core = 0;
-  for (int j = 0; j < kRows / 2; ++j) {
-    const float* const first = &values[j * kAcross + (kAcross - kCore) / 2];
-    core = std::accumulate(first, first + kCore, core);
-  }
-  core /= float{kCore} * kRows / 2;
-  const float mean = std::accumulate(values.begin(), values.end(), 0.0F) / FootPatch::kCount;
-  const float squares = std::transform_reduce(values.begin(), values.end(), 0.0F, std::plus<>(),
-                                              [&](float v) { return (v - mean) * (v - mean); });
-  const float spread = std::sqrt(squares / FootPatch::kCount);
-  const float scale = (shape.dark ? 1.0F : -1.0F) / std::max(spread, kLeastSpread);
-  for (float& value : values) value = std::clamp((value - core) * scale, -kMost, kMost);
+  standardise_patch(values, shape.dark);
   return values;
 }
 

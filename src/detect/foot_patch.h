@@ -20,8 +20,8 @@ struct FootPatch {
 };
 
 /// Beyond the borders the panorama goes on round the turn where it `wraps`, else by its outermost
-/// pixels. log[i] is the log brightness of i / 4 grey levels, up to 1023; `focal`: columns a
-/// radian.
+/// pixels. log[i] is the log brightness of i / 4 grey levels, kLogLevels of them; `focal`:
+/// columns a radian.
 FootPatch::Values read_foot_patch(const PanoramaView& panorama, bool wraps, const float* log,
                                   const TrunkShape& shape, double focal);
 

@@ -16,8 +16,7 @@ using F = TrunkFeatures;
 // Borders of the cells across, in widths from the middle.
 constexpr std::array<float, F::kAcross + 1> kBorders = {
     -1.5F, -1.0F, -0.75F, -0.55F, -0.4F, -0.2F, 0.0F, 0.2F, 0.4F, 0.55F, 0.75F, 1.0F, 1.5F};
-constexpr float kLeastSpread = 0.06F;  // of log brightness
-constexpr int kTall = 48;              // bands
+constexpr int kTall = 48;  // bands
 
 }  // namespace
 
@@ -25,8 +24,9 @@ FeatureReader::FeatureReader(const DetectorSetup& setup)
     : last_band_(setup.panorama.rows / Bands::kRows),
       wraps_(setup.panorama.wraps()),
       focal_(setup.panorama.focal()),
-      log_(1024) {
-  for (int i = 0; i < 1024; ++i) log_[i] = std::log(static_cast<float>(i) / 4 + Bands::kBlackLevel);
+      log_(kLogLevels) {
+  for (int i = 0; i < kLogLevels; ++i)
+    log_[i] = std::log(static_cast<float>(i) / 4 + Bands::kBlackLevel);
 }
 
 float FeatureReader::read_grid(const Bands& bands, const TrunkShape& shape, int first_band,
@@ -88,7 +88,7 @@ float FeatureReader::read_grid(const Bands& bands, const TrunkShape& shape, int 
   }
   GridValues values;
   const auto [mean, spread] = read_cells(columns, rows, values);
-  const float scale = 1 / std::max(spread, kLeastSpread);
+  const float scale = 1 / std::max(spread, Bands::kLeastSpread);
   for (const auto& cells : values)
     for (int i = 0; i < F::kAcross; ++i) *out++ = (cells[i] - mean) * scale;
   return spread;
@@ -110,7 +110,7 @@ void FeatureReader::read_foot(const PanoramaView& panorama, const TrunkShape& sh
   constexpr int kRowsAbove = F::kFootRows / 2;
   const float core =
       std::accumulate(middle.begin(), middle.begin() + kRowsAbove, 0.0F) / kRowsAbove;
-  const float scale = (shape.dark ? 1.0F : -1.0F) / std::max(spread, kLeastSpread);
+  const float scale = (shape.dark ? 1.0F : -1.0F) / std::max(spread, Bands::kLeastSpread);
   const auto value = [scale](float x) { return std::clamp(x * scale, -4.0F, 4.0F); };
   for (int j = 0; j < F::kFootRows; ++j) {
     *out++ = value(left[j] - middle[j]);
@@ -126,7 +126,7 @@ void FeatureReader::read(const Bands& bands, const PanoramaView& panorama, const
   even_rows(levels, out.data());
   float* const foot = out.data() + F::kGrid;
   read_foot(panorama, shape, spread, foot);
-  out.back() = even_foot(std::max(spread, kLeastSpread), foot);
+  out.back() = even_foot(std::max(spread, Bands::kLeastSpread), foot);
 }
 
 void FeatureReader::glance(const Bands& bands, const TrunkShape& shape, const EdgeFit& fit,
@@ -166,7 +166,7 @@ float FeatureReader::read_but_foot(const Bands& bands, const TrunkShape& shape, 
       shape.slope() * 20,
   };
   std::copy(std::begin(numbers), std::end(numbers), out.data() + F::kGrid + F::kFoot);
-  levels = row_contrasts(std::max(spread, kLeastSpread), out.data(),
+  levels = row_contrasts(std::max(spread, Bands::kLeastSpread), out.data(),
                          out.data() + F::kGrid + F::kFoot + F::kNumbers);
   return spread;
 }

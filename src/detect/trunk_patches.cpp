@@ -11,8 +11,7 @@ constexpr int kSide = TrunkPatches::kSide;
 static_assert(kSide == kPatchSide);
 constexpr float kLeastAround = 40, kMostAround = 600;  // columns to each side, of 1440 a turn
 constexpr float kMostHalf = 0.5F * kSide * Bands::kMostColumns;  // of the cells of a patch
-constexpr float kMostRows = 530;       // from the view's top to a foot, of 1440 columns a turn
-constexpr float kLeastSpread = 0.06F;  // of log brightness
+constexpr float kMostRows = 530;  // from the view's top to a foot, of 1440 columns a turn
 
 // What of the panorama a patch shows.
 struct Extent {
@@ -45,7 +44,7 @@ TrunkPatches::Patch read_patch(const Bands& bands, const Extent& extent, bool da
     cells.factors[y] = kUnit / (columns.cell * static_cast<float>(to - from));
   }
   TrunkPatches::Patch patch;
-  standardise_cells(cells, (dark ? 1.0F : -1.0F) * TrunkPatches::kUnits, kLeastSpread,
+  standardise_cells(cells, (dark ? 1.0F : -1.0F) * TrunkPatches::kUnits, Bands::kLeastSpread,
                     patch.data());
   return patch;
 }

@@ -10,22 +10,20 @@ two hidden layers of leaky units over the standardised features. Samples are sho
 the time. Gaussian noise on the inputs keeps the network from leaning on details that only the
 simulator has; the last epochs go without, so that the deviations are those of clean inputs.
 """
-import argparse
 import math
-import pathlib
 
 import numpy as np
 import torch
 from torch import nn
 
-from detector_source import LEAK, biases, constant, matrix, numbers
+from detector_source import LEAK, biases, constant, matrix, numbers, parser
 from likelihood import OUTPUTS, loss, report
 from samples import (ACROSS, FEATURES, FOOT, GRID, HEIGHTS, LIMIT, MIRRORED_HEAD, ROWS,
                      Standardised, load, mirror, of_held_out_frames, weighed)
 
 HIDDEN, GLANCE_HIDDEN = (192, 48), (48,)
 SPREAD_NUMBER = 2  # of the grid, log brightness
-LEAST_SPREAD = constant("kLeastSpread", "src/detect/trunk_features.cpp")
+LEAST_SPREAD = constant("kLeastSpread", "src/detect/bands.h")
 LEAST_ROW_SPREAD = constant("kLeastSpread", "src/detect/row_contrasts.cpp")
 EPOCHS, LAST_EPOCHS, BATCH, DECAY, NOISE = 14, 2, 2048, 1e-4, 0.1
 RATE, LAST_RATE, WARM_UP = 3e-3, 1e-5, 200  # the learning rate's peak and end; steps to the peak
@@ -129,13 +127,9 @@ def fit(head, x, shown, mirror, hidden, path):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", required=True, type=pathlib.Path,
-                        help="the folder of weights.inc and glance_weights.inc")
-    parser.add_argument("--only", choices=["weights", "glance_weights"])
-    parser.add_argument("dumps", nargs="*")
-    arguments = parser.parse_args()
+    options = parser(__doc__, "weights.inc and glance_weights.inc")
+    options.add_argument("--only", choices=["weights", "glance_weights"])
+    arguments = options.parse_args()
     networks = {"weights": (lambda x: x, mirror(), HIDDEN),
                 "glance_weights": (at_a_glance, mirror_at_a_glance(), GLANCE_HIDDEN)}
     if arguments.only:

@@ -9,15 +9,13 @@ both summaries and the features. A whole batch is shown mirrored, the patches in
 without features, and the features' noise stays to the end. What the network says of the inputs of
 the detector's own test goes to the golden file of that.
 """
-import argparse
-import pathlib
-
 import numpy as np
 import torch
 from torch import nn
 from torch.nn import functional
 
-from detector_source import LEAK, ROOT, biases, constant, matrix, numbers
+from detector_source import (LEAK, biases, constant, matrix, numbers, parser, waves,
+                             write_golden)
 from disguise import disguised
 from likelihood import OUTPUTS, loss, report
 from samples import (FEATURES, LIMIT, MIRRORED_HEAD, Standardised, load, mirror,
@@ -167,24 +165,17 @@ constexpr float kScale[] = {{{numbers(standardised.scale)}}};
 
 
 @torch.no_grad()
-def write_golden(net, standardised, path):
+def of_some_inputs(net, standardised):
     """Of the features and patches of some_features() and some_patches() in network_test.cpp."""
-    i = np.arange(FEATURES)
-    features = np.sin(np.float32(0.37) * (i * i % 101).astype(np.float32))[None]
+    features = waves(FEATURES, 0.37)[None]
     i = np.arange(SIDE ** 2)
     patches = np.stack([i * i % 101 - 50, i * i % 67 - 33]).reshape(1, len(PATCHES), SIDE, SIDE)
-    out = net(torch.from_numpy(standardised(features).astype(np.float32)),
-              torch.from_numpy(patches).float() / CELL_UNITS)
-    path.write_bytes(out.numpy().astype("<f4").tobytes())
+    return net(torch.from_numpy(standardised(features).astype(np.float32)),
+               torch.from_numpy(patches).float() / CELL_UNITS)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", required=True, type=pathlib.Path,
-                        help="the folder of close_look_weights.inc")
-    parser.add_argument("dumps", nargs="*")
-    arguments = parser.parse_args()
+    arguments = parser(__doc__, "close_look_weights.inc").parse_args()
     torch.manual_seed(0)
     path = arguments.out / "close_look_weights.inc"
     if not arguments.dumps:
@@ -199,7 +190,7 @@ def main():
     report(outputs(net, samples, tested, standardised), samples.head[tested])
     even_out(net, samples.batch(shown[::200], standardised)[1])
     write(net, standardised, path)
-    write_golden(net, standardised, ROOT / "tests/golden/detect/close_look.bin")
+    write_golden("close_look.bin", of_some_inputs(net, standardised))
 
 
 if __name__ == "__main__":

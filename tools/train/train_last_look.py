@@ -8,14 +8,11 @@ over features is, but of trunks only and by the shifts alone; it sees the featur
 about the foot. Its deviations are those that 95 % of the errors of frames it was not shown lie
 within twice. What it says of the inputs of the detector's own test goes to the golden file of that.
 """
-import argparse
-import pathlib
-
 import numpy as np
 import torch
 from torch import nn
 
-from detector_source import LEAK, ROOT, constant
+from detector_source import LEAK, constant, parser, waves, write_golden
 from likelihood import OUTPUTS, errors, left_of_shifts, shifts_loss
 from samples import FEATURES, Standardised, load, mirror, of_held_out_frames, weighed
 from train import train, write
@@ -61,21 +58,14 @@ def fit(head, x, standardised):
     return net
 
 
-def write_golden(net, standardised, path):
+def of_some_inputs(net, standardised):
     """Of the features and the patch of some_features() and some_foot() in network_test.cpp."""
-    i = np.arange(FEATURES), np.arange(PATCH)
-    x = np.concatenate([np.sin(np.float32(factor) * (k * k % 101).astype(np.float32))
-                        for factor, k in zip((0.37, 0.23), i)])[None]
-    path.write_bytes(outputs(net, standardised, x).numpy().astype("<f4").tobytes())
+    return outputs(net, standardised,
+                   np.concatenate([waves(FEATURES, 0.37), waves(PATCH, 0.23)])[None])
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", required=True, type=pathlib.Path,
-                        help="the folder of last_look_weights.inc")
-    parser.add_argument("dumps", nargs="*")
-    arguments = parser.parse_args()
+    arguments = parser(__doc__, "last_look_weights.inc").parse_args()
     torch.manual_seed(0)
     path = arguments.out / "last_look_weights.inc"
     if not arguments.dumps:
@@ -87,7 +77,7 @@ def main():
     standardised = Standardised(x[::8], mirror_with_foot())
     net = fit(head, x, standardised)
     write(standardised, net, path)
-    write_golden(net, standardised, ROOT / "tests/golden/detect/last_look.bin")
+    write_golden("last_look.bin", of_some_inputs(net, standardised))
 
 
 if __name__ == "__main__":

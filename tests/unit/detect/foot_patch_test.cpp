@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "detect/foot_kernels.h"
 #include "painted_panorama.h"
 
 namespace bole {
@@ -42,7 +43,7 @@ class FootPatchTest : public testing::Test {
   }
 
   PaintedPanorama panorama_{full_panorama(1440, 0.4, 0.9, 1.0)};
-  std::array<float, 1024> log_;
+  std::array<float, kLogLevels> log_;
 };
 
 // A dark trunk of 40 columns that ends at row 220: beside it and below it is brighter.

@@ -13,12 +13,16 @@
 namespace bole {
 namespace {
 
-TrunkFeatures::Values some_features() {
-  TrunkFeatures::Values features;
-  for (int i = 0; i < TrunkFeatures::kCount; ++i)
-    features[i] = std::sin(0.37F * static_cast<float>(i * i % 101));
-  return features;
+template <class Values>
+Values waves(float factor) {
+  Values values;
+  for (int i = 0; i < static_cast<int>(values.size()); ++i)
+    values[i] = std::sin(factor * static_cast<float>(i * i % 101));
+  return values;
 }
+
+TrunkFeatures::Values some_features() { return waves<TrunkFeatures::Values>(0.37F); }
+FootPatch::Values some_foot() { return waves<FootPatch::Values>(0.23F); }
 
 TrunkPatches some_patches() {
   TrunkPatches patches;
@@ -27,13 +31,6 @@ TrunkPatches some_patches() {
     patches.around[i] = static_cast<std::int8_t>(i * i % 67 - 33);
   }
   return patches;
-}
-
-FootPatch::Values some_foot() {
-  FootPatch::Values foot;
-  for (int i = 0; i < FootPatch::kCount; ++i)
-    foot[i] = std::sin(0.23F * static_cast<float>(i * i % 101));
-  return foot;
 }
 
 void expect_golden(const char* name, const Judgement& now, float tolerance = 5e-3F) {
