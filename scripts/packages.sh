@@ -2,9 +2,9 @@
 # shellcheck shell=bash
 build_packages=(
   build-essential ccache cmake file git help2man ninja-build pkg-config
-  libbenchmark-dev libcamera-dev libcli11-dev libgmock-dev libgtest-dev libhwy-dev liblcm-bin liblcm-dev
-  libopencv-dev libpng-dev libspdlog-dev libsystemd-dev libtomlplusplus-dev libturbojpeg0-dev
-  libyaml-cpp-dev nlohmann-json3-dev zlib1g-dev
+  libbenchmark-dev libcamera-dev libcli11-dev libgmock-dev libgtest-dev libhwy-dev libjpeg-dev liblcm-bin
+  liblcm-dev libopencv-dev libpng-dev libspdlog-dev libsystemd-dev libtomlplusplus-dev
+  libturbojpeg0-dev libyaml-cpp-dev nlohmann-json3-dev zlib1g-dev
 )
 check_packages=(clang-format clang-tidy iproute2 openssl python3-venv)
 # The core's check on arm64: scripts/arm64-check.

@@ -56,40 +56,5 @@ TEST(LumaDecoder, RefusesWhatIsDamagedOrOfAnotherSizeAndGoesOn) {
   EXPECT_EQ(decoder.decode(jpeg, kSize).size, kSize);
 }
 
-// The ramp with so many bytes put before its end marker.
-std::vector<std::byte> padded_ramp(std::size_t bytes, std::byte value = std::byte{0}) {
-  std::vector<std::byte> jpeg = jpeg_of_ramp();
-  jpeg.insert(jpeg.end() - 2, bytes, value);
-  return jpeg;
-}
-
-TEST(LumaDecoder, TakesAWholePictureWithAFewBytesTooManyAtItsEnd) {
-  LumaDecoder decoder;
-  const ImageView plain = decoder.decode(jpeg_of_ramp(), kSize);
-  const std::vector<std::byte> expected(plain.planes[0].bytes.begin(), plain.planes[0].bytes.end());
-  for (const std::size_t bytes : {1, 2, 4, 16}) {
-    const ImageView luma = decoder.decode(padded_ramp(bytes), kSize);
-    EXPECT_TRUE(std::ranges::equal(luma.planes[0].bytes, expected)) << bytes;
-  }
-}
-
-TEST(LumaDecoder, RefusesAPictureThatLacksCodesOrLeavesManyOver) {
-  LumaDecoder decoder;
-  const std::vector<std::byte> jpeg = jpeg_of_ramp();
-  for (const std::size_t missing : {20, 200, 1000}) {
-    std::vector<std::byte> cut = jpeg;
-    cut.erase(cut.end() - 2 - static_cast<std::ptrdiff_t>(missing), cut.end() - 2);
-    EXPECT_THROW(decoder.decode(cut, kSize), BadFrame) << missing;
-    cut.insert(cut.end() - 2, 4, std::byte{0});  // is no excuse for it
-    EXPECT_THROW(decoder.decode(cut, kSize), BadFrame) << missing;
-  }
-  std::vector<std::byte> broken = jpeg;
-  const auto middle = broken.begin() + static_cast<std::ptrdiff_t>(broken.size() / 2);
-  std::fill_n(middle, 200, std::byte{0xfe});  // no codes
-  broken.insert(broken.end() - 2, 4, std::byte{0});
-  EXPECT_THROW(decoder.decode(broken, kSize), BadFrame);
-  EXPECT_THROW(decoder.decode(padded_ramp(1000, std::byte{0x5a}), kSize), BadFrame);
-}
-
 }  // namespace
 }  // namespace bole
