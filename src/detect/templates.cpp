@@ -16,13 +16,17 @@ namespace {
 constexpr double kContrast = 0.20;  // of log brightness: full contrast
 constexpr int kLeastEvidence = 96;  // of a candidate
 constexpr double kWidthStep = 1.15;
-constexpr double kNarrowest = 4;       // columns
-constexpr int kWidestFlank = 28;       // columns
-constexpr int kWidestStep = 4;         // columns from one left edge to the next
-constexpr double kSlope = 0.30;        // rising ground shifts feet by up to this tangent
-constexpr double kFootSigma = 0.10;    // tangent, of the foot that evidence ends at
-constexpr double kRankByWidth = -0.4;  // powers beside the evidence
-constexpr double kRankByPlace = 0.15;
+constexpr double kNarrowest = 4;     // columns
+constexpr int kWidestFlank = 28;     // columns
+constexpr int kWidestStep = 4;       // columns from one left edge to the next
+constexpr double kSlope = 0.30;      // rising ground shifts feet by up to this tangent
+constexpr double kHeldBack = -0.4;   // power of the width: wide templates gather more from nothing
+constexpr double kFootSigma = 0.10;  // tangent, of the foot that evidence ends at
+constexpr double kPlaceCounts = 0.27;   // power of its likelihood
+constexpr double kUsualShare = 0.53;    // of the searched range, where most trees are found
+constexpr double kRangeSpread = 1.31;   // standard deviation about that, of the range's logarithm
+constexpr double kLeastTangent = 0.03;  // of a foot: nearer the horizon all are as far away
+constexpr double kLikely = 0.15;        // logarithm: from so much below 0 on a place counts
 
 // To the nearest whole number; columns stay far from the limits.
 int rounded(double x) { return static_cast<int>(x + (kFar + 0.5)) - static_cast<int>(kFar); }
@@ -88,7 +92,7 @@ Templates::Templates(const DetectorSetup& setup, const Bands& bands, int most_ca
     size.first_foot = static_cast<int>(band_of_tangent(-kSlope));
     size.last_foot = static_cast<int>(std::ceil(band_of_tangent(1.15 * down + 0.05)));
     if (size.last_foot <= size.first_foot) continue;
-    weigh_feet(posterior, horizon, size);
+    weigh_feet(setup, posterior, size);
     sizes_.push_back(std::move(size));
   }
   for (auto& peaks : peaks_) {
@@ -106,17 +110,22 @@ Templates::Templates(const DetectorSetup& setup, const Bands& bands, int most_ca
   earlier_in_part_.reserve(most_);
 }
 
-// How much the place of a foot counts in a candidate's rank, by the band that the trunk ends in.
-// The ground need not be level, and the foot is coarse yet: little, but for where no searched tree
-// can end.
-void Templates::weigh_feet(const RangePosterior& posterior, double horizon, Size& size) const {
+// How much the place of a foot counts in a candidate's rank, by the band that the trunk ends in:
+// more where searched trees are likely to end on level ground, and where they are found rather than
+// at the horizon, at which the contrasts of all the wood behind end. Nowhere does it count against
+// a candidate: under a tilt feet are elsewhere, and trees that are not searched tell of the tilt.
+void Templates::weigh_feet(const DetectorSetup& setup, const RangePosterior& posterior,
+                           Size& size) const {
+  const double usual = kUsualShare * setup.search.range.high;
+  const double held_back = std::pow(size.width, kHeldBack);
   for (int band = 0; band < bands_; ++band) {
+    const double down = -setup.panorama.tangent_of_row((band + 1) * Bands::kRows - 0.5);
     const double likelihood = posterior.log_likelihood_of_searched(
-        {.down = ((band + 1) * Bands::kRows - horizon) / focal_,
-         .down_sigma = kFootSigma,
-         .angular_width = size.width / focal_});
-    size.rank_factors.push_back(std::pow(size.width, kRankByWidth) *
-                                std::exp(kRankByPlace * likelihood));
+        {.down = down, .down_sigma = kFootSigma, .angular_width = size.width / focal_});
+    const double off =
+        std::log(setup.height / (std::max(down, kLeastTangent) * usual)) / kRangeSpread;
+    const double place = kLikely + kPlaceCounts * likelihood - 0.5 * off * off;
+    size.rank_factors.push_back(held_back * std::exp(std::max(place, 0.0)));
   }
 }
 

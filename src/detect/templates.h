@@ -17,7 +17,7 @@ struct Candidate {
   float width = 0;   ///< columns
   float foot = 0;    ///< row just below the visible trunk
   bool dark = true;  ///< darker than what is beside it
-  float rank = 0;    ///< sum of contrast, wide templates held back: they gather more from nothing
+  float rank = 0;    ///< contrast, more where it ends as that of a searched tree does
 };
 
 /// Contrast templates: a trunk is a pair of opposite edges that run down the image together, and it
@@ -67,7 +67,7 @@ class Templates {
     bool beats(int left, int evidence_there) const;
   };
 
-  void weigh_feet(const RangePosterior& posterior, double horizon, Size& size) const;
+  void weigh_feet(const DetectorSetup& setup, const RangePosterior& posterior, Size& size) const;
   void add_flank(const Bands& bands, int width);
   int thinned_pitch(int step) const;
   void thin(const Bands& bands, int step);

@@ -30,6 +30,24 @@ TEST(TrunkFinder, ReadsNoOutlineThatLeadsOutOfTheBands) {
     EXPECT_FALSE(finder.read(panorama.view(), shape, {}, features));
 }
 
+// A faint bar where a searched tree ends goes before a clear one that ends at the horizon.
+TEST(TrunkFinder, RanksCandidatesHigherThatEndWhereSearchedTreesDo) {
+  PaintedPanorama panorama(full_panorama(1440, 0.4, 0.9, 1.0));
+  const PaintedPanorama::Bar tree{1.0, 4.0, 0.4, 106}, stem{-1.0, 40.0, 4.0, 30};
+  panorama.plant(tree);
+  panorama.plant(stem);
+  TrunkFinder finder(panorama.setup());
+  const auto candidates = finder.candidates(panorama.view());
+  const auto place = [&](const PaintedPanorama::Bar& bar) {
+    const double middle = panorama.setup().panorama.column_of_bearing(bar.bearing) + 0.5;
+    return std::ranges::find_if(candidates, [&](const Candidate& c) {
+      return c.dark && std::abs(c.left + c.width / 2 - middle) < 3;
+    });
+  };
+  ASSERT_NE(place(stem), candidates.end());
+  EXPECT_LT(place(tree), place(stem));
+}
+
 // What a patch holds: a dark trunk's core is darker than what is beside it, and brighter where its
 // polarity is turned round; in the surroundings it is as narrow as it is in the picture.
 TEST(TrunkFinder, ShowsATrunkInItsPatches) {
