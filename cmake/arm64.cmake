@@ -14,5 +14,7 @@ set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
 set(ENV{PKG_CONFIG_SYSROOT_DIR} "${BOLE_SYSROOT}")
 set(ENV{PKG_CONFIG_LIBDIR}
     "${BOLE_SYSROOT}/usr/lib/aarch64-linux-gnu/pkgconfig:${BOLE_SYSROOT}/usr/share/pkgconfig")
+# What a library's headers keep for each architecture, as libjpeg's do.
+set(CMAKE_CXX_FLAGS_INIT "-idirafter ${BOLE_SYSROOT}/usr/include/aarch64-linux-gnu")
 set(CMAKE_EXE_LINKER_FLAGS_INIT
     "-Wl,-rpath-link,${BOLE_SYSROOT}/usr/lib/aarch64-linux-gnu:${BOLE_SYSROOT}/lib/aarch64-linux-gnu")
