@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/errors.h"
 #include "base/files.h"
 #include "geometry/angles.h"
+#include "support/config_problem.h"
 
 namespace bole {
 namespace {
@@ -57,13 +57,11 @@ std::string with(std::string_view base, const std::string& from, const std::stri
 }
 
 std::string problem_of(const std::string& text) {
-  try {
-    parse(text);
-    return "none";
-  } catch (const ConfigError& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("camera.toml: "), Not(HasSubstr("\n"))));
-    return error.what();
+  const std::string problem = test::config_problem([&] { parse(text); });
+  if (problem != "none") {
+    EXPECT_THAT(problem, AllOf(HasSubstr("camera.toml: "), Not(HasSubstr("\n"))));
   }
+  return problem;
 }
 
 std::string omni_problem(const std::string& from, const std::string& to) {

@@ -8,10 +8,10 @@
 #include <limits>
 #include <stdexcept>
 
-#include "base/errors.h"
 #include "geometry/angles.h"
 #include "geometry/mount.h"
 #include "geometry/ocam.h"
+#include "support/config_problem.h"
 #include "unit/geometry/opencv_yaml.h"
 #include "unit/geometry/same_world.h"
 
@@ -25,12 +25,7 @@ FisheyeModel read(std::string_view text, ImageSize size = {}) {
 }
 
 std::string problem_of(std::string_view text, ImageSize size = {}) {
-  try {
-    read(text, size);
-    return "none";
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
+  return test::config_problem([&] { read(text, size); });
 }
 
 std::string with(std::string_view from, std::string_view to) {

@@ -9,8 +9,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "base/errors.h"
 #include "base/files.h"
+#include "support/config_problem.h"
 
 namespace bole {
 namespace {
@@ -26,12 +26,7 @@ constexpr std::string_view kText =
 OcamModel model_of(std::string_view text) { return parse_ocam(text, "calib_results.txt"); }
 
 std::string problem_of(const std::string& text) {
-  try {
-    model_of(text);
-    return "none";
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
+  return test::config_problem([&] { model_of(text); });
 }
 
 std::string with(const std::string& from, const std::string& to) {

@@ -6,10 +6,10 @@
 #include <array>
 #include <cmath>
 
-#include "base/errors.h"
 #include "geometry/mount.h"
 #include "geometry/ocam.h"
 #include "geometry/pinhole.h"
+#include "support/config_problem.h"
 #include "unit/geometry/opencv_yaml.h"
 #include "unit/geometry/same_world.h"
 
@@ -23,12 +23,7 @@ OmnidirModel read(std::string_view text, ImageSize size = {}) {
 }
 
 std::string problem_of(std::string_view text) {
-  try {
-    read(text);
-    return "none";
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
+  return test::config_problem([&] { read(text); });
 }
 
 std::string with(std::string_view from, std::string_view to) {

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "base/errors.h"
 #include "geometry/angles.h"
+#include "support/config_problem.h"
 
 namespace bole {
 namespace {
@@ -30,12 +30,7 @@ distortion_coefficients: !!opencv-matrix
 )";
 
 std::string problem_of(std::string_view text) {
-  try {
-    parse_pinhole(text, "camera.yaml");
-    return "none";
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
+  return test::config_problem([&] { parse_pinhole(text, "camera.yaml"); });
 }
 
 std::string with(const std::string& from, const std::string& to) {

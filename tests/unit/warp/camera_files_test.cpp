@@ -5,9 +5,9 @@
 
 #include <map>
 
-#include "base/errors.h"
 #include "base/files.h"
 #include "geometry/angles.h"
+#include "support/config_problem.h"
 #include "unit/warp/test_cameras.h"
 #include "warp/warp_table.h"
 
@@ -17,12 +17,7 @@ namespace {
 using ::testing::HasSubstr;
 
 std::string problem_of(const std::filesystem::path& camera_toml) {
-  try {
-    load_camera(camera_toml);
-    return "none";
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
+  return test::config_problem([&] { load_camera(camera_toml); });
 }
 
 const std::vector<std::uint8_t> kAllSeen(320 * 240, 255);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/errors.h"
+#include "support/config_problem.h"
 #include "unit/warp/test_cameras.h"
 #include "warp/table_cache.h"
 
@@ -27,12 +28,7 @@ bool is_seen(const WarpTable& table, int row, int column) {
 }
 
 std::string problem_of(const std::vector<std::byte>& bytes, std::uint32_t digest) {
-  try {
-    WarpTable::parse(bytes, "some.table", digest);
-    return "none";
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
+  return test::config_problem([&] { WarpTable::parse(bytes, "some.table", digest); });
 }
 
 std::vector<std::byte> copy_of(std::span<const std::byte> bytes) {
