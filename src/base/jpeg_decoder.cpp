@@ -12,7 +12,7 @@
 namespace bole {
 
 /// What libjpeg works with. Where it refuses a picture it jumps, as its manual has it: so nothing
-/// that needs a destructor may live in what attempt() runs.
+/// that needs a destructor may live in what run() is given.
 struct JpegDecoder::State {
   jpeg_decompress_struct jpeg{};
   jpeg_error_mgr errors{};
@@ -34,19 +34,24 @@ struct JpegDecoder::State {
     if (!attempt([this] { jpeg_create_decompress(&jpeg); })) throw std::bad_alloc();
     jpeg.progress = &progress;
   }
+  ~State() { jpeg_destroy_decompress(&jpeg); }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
 
-  /// Whether nothing was refused in `work`; the reason is told otherwise.
+  /// Throws DamagedJpeg when something is refused in `work`.
+  template <typename Work>
+  void run(Work work) {
+    if (!attempt(work)) throw DamagedJpeg(reason);
+  }
+
+ private:
   template <typename Work>
   bool attempt(Work work) {
-    if (setjmp(refused) != 0) {
-      jpeg_abort_decompress(&jpeg);
-      return false;
-    }
+    if (setjmp(refused) != 0) return false;
     work();
     return true;
   }
 
- private:
   // A file with more of them is made to take hours.
   static constexpr int kMostScans = 500;
 
@@ -72,42 +77,33 @@ struct JpegDecoder::State {
   }
 };
 
-void JpegDecoder::Destroy::operator()(State* state) const {
-  jpeg_destroy_decompress(&state->jpeg);
-  delete state;
-}
-
-JpegDecoder::JpegDecoder() : state_(new State) {}
+JpegDecoder::JpegDecoder() : state_(std::make_unique<State>()) {}
 
 JpegDecoder::~JpegDecoder() = default;
 
 JpegDecoder::Header JpegDecoder::read_header(std::span<const std::byte> bytes) {
   jpeg_decompress_struct& jpeg = state_->jpeg;
-  if (!state_->attempt([&] {
-        jpeg_abort_decompress(&jpeg);  // a picture whose header alone was read
-        jpeg_mem_src(&jpeg, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
-        jpeg_read_header(&jpeg, TRUE);
-      })) {
-    throw DamagedJpeg(state_->reason);
-  }
+  state_->run([&] {
+    jpeg_abort_decompress(&jpeg);  // the picture before, where it was not decoded to its end
+    jpeg_mem_src(&jpeg, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+    jpeg_read_header(&jpeg, TRUE);
+  });
   return {{static_cast<int>(jpeg.image_width), static_cast<int>(jpeg.image_height)},
           jpeg.jpeg_color_space == JCS_GRAYSCALE};
 }
 
 void JpegDecoder::decode(PixelFormat format, std::span<std::byte> pixels) {
   jpeg_decompress_struct& jpeg = state_->jpeg;
-  if (!state_->attempt([&] {
-        jpeg.out_color_space = format == PixelFormat::grey ? JCS_GRAYSCALE : JCS_EXT_BGR;
-        jpeg_start_decompress(&jpeg);
-        const std::size_t row_bytes = pixels.size() / jpeg.output_height;
-        while (jpeg.output_scanline < jpeg.output_height) {
-          auto* row = reinterpret_cast<JSAMPROW>(&pixels[jpeg.output_scanline * row_bytes]);
-          jpeg_read_scanlines(&jpeg, &row, 1);
-        }
-        jpeg_finish_decompress(&jpeg);
-      })) {
-    throw DamagedJpeg(state_->reason);
-  }
+  state_->run([&] {
+    jpeg.out_color_space = format == PixelFormat::grey ? JCS_GRAYSCALE : JCS_EXT_BGR;
+    jpeg_start_decompress(&jpeg);
+    const std::size_t row_bytes = pixels.size() / jpeg.output_height;
+    while (jpeg.output_scanline < jpeg.output_height) {
+      auto* row = reinterpret_cast<JSAMPROW>(&pixels[jpeg.output_scanline * row_bytes]);
+      jpeg_read_scanlines(&jpeg, &row, 1);
+    }
+    jpeg_finish_decompress(&jpeg);
+  });
 }
 
 }  // namespace bole

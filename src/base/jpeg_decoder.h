@@ -41,10 +41,7 @@ class JpegDecoder {
 
  private:
   struct State;
-  struct Destroy {
-    void operator()(State* state) const;
-  };
-  std::unique_ptr<State, Destroy> state_;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace bole
