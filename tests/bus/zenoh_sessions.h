@@ -14,7 +14,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/errors.h"
 #include "base/files.h"
 #include "publish/zenoh_session.h"
 
@@ -100,16 +99,6 @@ inline std::optional<std::chrono::milliseconds> time_to_delivery(ZenohSession& d
     }
   }
   return std::nullopt;
-}
-
-template <typename Call>
-std::string error_of(Call call) {
-  try {
-    call();
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 }  // namespace bole::test

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "support/config_problem.h"
+
 namespace bole {
 namespace {
 
@@ -24,9 +26,9 @@ TEST(ZenohSession, RefusesMalformedEndpoints) {
        }) {
     const auto expected = AllOf(HasSubstr("boled.toml: zenoh.connect: "), HasSubstr(endpoint),
                                 HasSubstr(why), HasSubstr("tcp/HOST:PORT"));
-    EXPECT_THAT(error_of([&] { ZenohSession session(connecting(endpoint)); }), expected);
+    EXPECT_THAT(config_problem([&] { ZenohSession session(connecting(endpoint)); }), expected);
   }
-  EXPECT_THAT(error_of([] { ZenohSession session(listening("tcp/x")); }),
+  EXPECT_THAT(config_problem([] { ZenohSession session(listening("tcp/x")); }),
               HasSubstr("zenoh.listen"));
 }
 
@@ -50,27 +52,27 @@ TEST(ZenohSettings, AreCheckedWithoutAPort) {
   const auto taken = bind_to_free_port(port);
   ASSERT_EQ(listen(taken.get(), 1), 0);
   EXPECT_NO_THROW(check_zenoh(listening("tcp/127.0.0.1:" + std::to_string(port))));
-  EXPECT_THAT(error_of([] { check_zenoh(connecting("tcp/127.0.0.1")); }),
+  EXPECT_THAT(config_problem([] { check_zenoh(connecting("tcp/127.0.0.1")); }),
               HasSubstr("boled.toml: zenoh.connect: "));
 }
 
 TEST(ZenohSession, RefusesSettingsThatCannotWork) {
   auto config = listening(free_endpoint());
   config.mode = "broker";
-  EXPECT_THAT(error_of([&] { ZenohSession session(config); }), HasSubstr("zenoh.mode"));
+  EXPECT_THAT(config_problem([&] { ZenohSession session(config); }), HasSubstr("zenoh.mode"));
   config = {};
   config.mode = "client";
-  EXPECT_THAT(error_of([&] { ZenohSession session(config); }), HasSubstr("zenoh.connect"));
+  EXPECT_THAT(config_problem([&] { ZenohSession session(config); }), HasSubstr("zenoh.connect"));
   config = listening(free_endpoint());
   config.config_file = "/nonexistent.json5";
-  EXPECT_THAT(error_of([&] { ZenohSession session(config); }),
+  EXPECT_THAT(config_problem([&] { ZenohSession session(config); }),
               AllOf(HasSubstr("zenoh.config_file"), HasSubstr("/nonexistent.json5")));
   const auto endpoint = free_endpoint();
   for (const std::string name : {"a*", "a/", ""}) {
-    EXPECT_NE(error_of([&] {
+    EXPECT_NE(config_problem([&] {
                 ZenohSession session(listening(endpoint), {{name, "top"}});
               }),
-              "")
+              "none")
         << name;
   }
 }
@@ -147,7 +149,7 @@ TEST_F(ZenohFiles, RefusesCertificatesThatDoNotFit) {
   auto config = listening(free_endpoint("tls"));
   const auto refused = [&](const ZenohConfig::Tls& tls) {
     config.tls = tls;
-    return error_of([&] { ZenohSession session(config); });
+    return config_problem([&] { ZenohSession session(config); });
   };
   auto mixed = tls("daemon", true);
   mixed.private_key = path("other.key");
@@ -185,7 +187,7 @@ TEST_F(ZenohFiles, TypedSettingsWinOverTheFileAndSaySo) {
   EXPECT_THAT(session.overridden(), Contains("zenoh.mode overrides mode of " + config.config_file));
 
   std::ofstream(path("zenoh.json5")) << "{ mode: }";
-  EXPECT_THAT(error_of([&] { ZenohSession broken(config); }), HasSubstr("zenoh.config_file"));
+  EXPECT_THAT(config_problem([&] { ZenohSession broken(config); }), HasSubstr("zenoh.config_file"));
 }
 
 }  // namespace

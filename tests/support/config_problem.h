@@ -6,11 +6,11 @@
 
 namespace bole::test {
 
-/// What reading a configuration file complains of; "none" when it is taken.
-template <class Read>
-std::string config_problem(const Read& read) {
+/// What a call that reads or uses a configuration complains of; "none" when it is taken.
+template <class Call>
+std::string config_problem(const Call& call) {
   try {
-    read();
+    call();
     return "none";
   } catch (const ConfigError& error) {
     return error.what();

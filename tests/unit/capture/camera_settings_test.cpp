@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "base/errors.h"
+#include "support/config_problem.h"
 
 namespace bole {
 namespace {
@@ -19,12 +19,7 @@ CameraSettings read(const std::string& text) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    read(text);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::config_problem([&] { read(text); });
 }
 
 TEST(CameraSettings, LeaveTheCameraAsItIsByDefault) {

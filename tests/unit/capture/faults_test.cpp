@@ -8,10 +8,10 @@
 #include <thread>
 #include <vector>
 
-#include "base/errors.h"
 #include "base/files.h"
 #include "capture/replay/replay_source.h"
 #include "capture/supervisor.h"
+#include "support/config_problem.h"
 #include "support/temporary_folder.h"
 
 namespace bole {
@@ -122,13 +122,8 @@ TEST(Faults, AClockStepMovesTheStampsFromThereOn) {
 
 TEST(Faults, ThatAreNoneAreRefused) {
   const TemporaryFolder folder;
-  const auto refused = [&](const std::string& script) -> std::string {
-    try {
-      read_faults(folder.write("faults.toml", script));
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return "accepted";
+  const auto refused = [&](const std::string& script) {
+    return test::config_problem([&] { read_faults(folder.write("faults.toml", script)); });
   };
   EXPECT_THAT(refused("[[fault]]\nkind = \"explode\"\nframe = 1\n"), HasSubstr("fault[0].kind"));
   EXPECT_THAT(refused("[[fault]]\nframe = 1\n"), HasSubstr("fault[0].kind: is missing"));

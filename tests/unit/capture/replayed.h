@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "base/errors.h"
 #include "capture/replay/replay_source.h"
+#include "support/config_problem.h"
 #include "support/temporary_folder.h"
 
 namespace bole::test {
@@ -77,12 +77,7 @@ inline std::vector<std::int64_t> utimes_of(const Replayed& seen) {
 
 inline std::string refusal(const ReplayOptions& options) {
   ReplayClock clock;
-  try {
-    make_replay_source(options, clock);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return config_problem([&] { make_replay_source(options, clock); });
 }
 
 inline TemporaryFolder folder_of(int frames) {
