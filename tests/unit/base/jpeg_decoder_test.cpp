@@ -6,6 +6,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <vector>
 
+#include "support/ramp_jpeg.h"
+
 namespace bole {
 namespace {
 
@@ -13,19 +15,7 @@ using Bytes = std::vector<std::byte>;
 
 constexpr ImageSize kSize{160, 120};
 
-// A colour ramp; with intervals, a restart marker stands after every so many blocks.
-Bytes jpeg_of_ramp(int interval = 0) {
-  cv::Mat ramp(kSize.height, kSize.width, CV_8UC3);
-  for (int i = 0; i < kSize.height; ++i) {
-    for (int j = 0; j < kSize.width; ++j) {
-      ramp.at<cv::Vec3b>(i, j) = cv::Vec3b(40, static_cast<uchar>(i), static_cast<uchar>(j));
-    }
-  }
-  std::vector<uchar> file;
-  cv::imencode(".jpg", ramp, file, {cv::IMWRITE_JPEG_RST_INTERVAL, interval});
-  const auto bytes = std::as_bytes(std::span(file));
-  return {bytes.begin(), bytes.end()};
-}
+Bytes jpeg_of_ramp(int interval = 0) { return test::ramp_jpeg(kSize, interval); }
 
 Bytes decoded(JpegDecoder& decoder, const Bytes& jpeg) {
   const JpegDecoder::Header header = decoder.read_header(jpeg);
@@ -46,14 +36,16 @@ Bytes padded(Bytes jpeg, std::size_t bytes, std::byte value = std::byte{0}) {
   return jpeg;
 }
 
-bool is_restart(std::byte byte) { return (byte & std::byte{0xf8}) == std::byte{0xd0}; }
+bool is_restart(std::byte first, std::byte second) {
+  return first == std::byte{0xff} && (second & std::byte{0xf8}) == std::byte{0xd0};
+}
 
 // With so many bytes put before every second restart marker.
 Bytes padded_between(const Bytes& jpeg, std::size_t bytes) {
   Bytes result;
   bool chosen = false;
   for (std::size_t i = 0; i < jpeg.size(); ++i) {
-    if (jpeg[i] == std::byte{0xff} && i + 1 < jpeg.size() && is_restart(jpeg[i + 1])) {
+    if (i + 1 < jpeg.size() && is_restart(jpeg[i], jpeg[i + 1])) {
       chosen = !chosen;
       if (chosen) result.insert(result.end(), bytes, std::byte{0});
     }
@@ -104,11 +96,8 @@ TEST(JpegDecoder, RefusesAPictureThatLacksCodes) {
 
 TEST(JpegDecoder, RefusesAPictureThatLacksAnInterval) {
   Bytes jpeg = padded_between(jpeg_of_ramp(10), 2);
-  const auto restart = [](std::byte a, std::byte b) {
-    return a == std::byte{0xff} && is_restart(b);
-  };
-  const auto first = std::ranges::adjacent_find(jpeg, restart);
-  const auto second = std::ranges::adjacent_find(first + 2, jpeg.end(), restart);
+  const auto first = std::ranges::adjacent_find(jpeg, is_restart);
+  const auto second = std::ranges::adjacent_find(first + 2, jpeg.end(), is_restart);
   ASSERT_NE(second, jpeg.end());
   jpeg.erase(first, second);
   EXPECT_THROW(decoded(jpeg), DamagedJpeg);

@@ -1,11 +1,8 @@
 #include "warp/luma_decoder.h"
 
 #include <gtest/gtest.h>
-#include <turbojpeg.h>
 
-#include <algorithm>
-#include <memory>
-
+#include "support/ramp_jpeg.h"
 #include "warp/bad_frame.h"
 
 namespace bole {
@@ -13,24 +10,7 @@ namespace {
 
 constexpr ImageSize kSize{160, 120};
 
-// A colour ramp whose luma is known from its red, green and blue.
-std::vector<std::byte> jpeg_of_ramp() {
-  std::vector<unsigned char> rgb;
-  for (int i = 0; i < kSize.height; ++i) {
-    for (int j = 0; j < kSize.width; ++j) {
-      rgb.insert(rgb.end(), {static_cast<unsigned char>(j), static_cast<unsigned char>(i), 40});
-    }
-  }
-  const std::unique_ptr<void, int (*)(void*)> handle(tjInitCompress(), tjDestroy);
-  unsigned char* bytes = nullptr;
-  unsigned long length = 0;
-  tjCompress2(handle.get(), rgb.data(), kSize.width, 0, kSize.height, TJPF_RGB, &bytes, &length,
-              TJSAMP_420, 95, 0);
-  const auto* const first = reinterpret_cast<const std::byte*>(bytes);
-  std::vector<std::byte> jpeg(first, first + length);
-  tjFree(bytes);
-  return jpeg;
-}
+std::vector<std::byte> jpeg_of_ramp() { return test::ramp_jpeg(kSize); }
 
 TEST(LumaDecoder, GivesTheLumaPlane) {
   LumaDecoder decoder;
