@@ -243,8 +243,7 @@ void read_foot_lines_plain(const PanoramaView& panorama, bool wraps, const float
   const auto mean = [&](int row, int first, int last) {
     int sum = 0;
     for (int x = first; x < last; ++x) {
-      const int inside = wraps ? ((x % width) + width) % width : std::clamp(x, 0, width - 1);
-      sum += panorama.row(row)[inside];
+      sum += panorama.row(row)[column_within(x, width, wraps)];
     }
     return log[static_cast<int>((4 * static_cast<float>(sum) + 0.5F) /
                                 static_cast<float>(last - first))];

@@ -38,10 +38,9 @@ class Line {
     }
     std::array<std::uint8_t, kMostPixels> upper, lower;
     for (int i = 0; i < count; ++i) {
-      const int column = first_ + i;
-      const int c = wraps ? (column % width + width) % width : std::clamp(column, 0, width - 1);
-      upper[i] = above[c];
-      lower[i] = below[c];
+      const int column = column_within(first_ + i, width, wraps);
+      upper[i] = above[column];
+      lower[i] = below[column];
     }
     add_up(upper.data(), lower.data(), low, count);
   }

@@ -82,9 +82,7 @@ EdgeFitter::EdgeFitter(const DetectorSetup& setup)
                   setup.height / setup.search.diameter.low},
       margin_(Templates::margin(setup)) {
   for (int x = -margin_; x < width_ + margin_; ++x) {
-    const int column =
-        setup.panorama.wraps() ? ((x % width_) + width_) % width_ : std::clamp(x, 0, width_ - 1);
-    const SeenRows& seen = setup.seen.columns[column];
+    const SeenRows& seen = setup.seen.columns[column_within(x, width_, setup.panorama.wraps())];
     first_seen_.push_back((seen.first + Bands::kRows - 1) / Bands::kRows);
     last_seen_.push_back(seen.empty() ? setup.panorama.rows : seen.last);
   }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "geometry/rotation.h"
 
 namespace bole {
@@ -37,6 +39,12 @@ struct PanoramaGeometry {
 
   friend bool operator==(const PanoramaGeometry&, const PanoramaGeometry&) = default;
 };
+
+/// The column, of `width`, that stands for one beyond the borders: round the turn where the
+/// panorama `wraps`, else the outermost.
+inline int column_within(int column, int width, bool wraps) {
+  return wraps ? (column % width + width) % width : std::clamp(column, 0, width - 1);
+}
 
 /// A full turn of `columns` from `elevation_top` radians down to the ground at `range_min` metres
 /// under a viewpoint `height` metres up: rows = ceil(focal (tan(elevation_top) + height /
