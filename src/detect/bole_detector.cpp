@@ -110,6 +110,7 @@ Tree BoleDetector::tree_of(const Trunk& trunk, const GroundTilt& tilt) const {
   const double raised = tilt.raise(bearing);
   TrunkSight level = seen;
   level.down += raised;
+  level.down_sigma = std::hypot(seen.down_sigma, tilt.sigma);
   const RangeEstimate place = range_.estimate(level);
   Tree tree;
   if (place.searched <= 0) return tree;

@@ -13,14 +13,16 @@ constexpr double kFootSigma = 0.004;                   // tangent
 constexpr double kLeanSigma = 0.035, kCrooked = 0.15;  // of straight trees; share of the others
 constexpr double kCrookedSigma = 0.12;
 constexpr double kTiltSigma = 0.04, kSlopeSigma = 0.10;  // tangents, where there is any
-constexpr double kRare = 5;                              // log odds against a tilt
+constexpr double kLevel = 1.5;                           // log odds of level ground
 constexpr std::size_t kFewest = 3;                       // witnesses
+constexpr double kStep = 0.04;                           // tangent, between tilts that are weighed
 
 double normal(double x, double sigma) { return std::exp(-0.5 * (x / sigma) * (x / sigma)) / sigma; }
 
-double against(const GroundTilt& tilt, double sigma) {
+// Logarithm of the probability that a tilt lies within half a step of this one, where there is any.
+double log_prior(const GroundTilt& tilt, double sigma) {
   const double square = tilt.forward * tilt.forward + tilt.left * tilt.left;
-  return kRare + 0.5 * square / (sigma * sigma);
+  return std::log(kStep * kStep / (2 * M_PI * sigma * sigma)) - 0.5 * square / (sigma * sigma);
 }
 
 }  // namespace
@@ -33,6 +35,10 @@ double GroundTilt::lean(double bearing) const { return lean(std::cos(bearing), s
 
 TiltEstimator::TiltEstimator(double height) : feet_(kWidths) {
   ready_.reserve(256);
+  for (int row = -kReach, i = 0; row <= kReach; ++row) {
+    for (int column = -kReach; column <= kReach; ++column)
+      tilts_[i++] = {.forward = kStep * column, .left = kStep * row};
+  }
   // Every range and size: what is searched for does not bear on where the ground is.
   const RangePosterior posterior(height, Search{{0.1, 1000}, {0.001, 100}});
   for (int w = 0; w < kWidths; ++w) {
@@ -49,41 +55,72 @@ TiltEstimator::TiltEstimator(double height) : feet_(kWidths) {
 }
 
 TiltEstimator::Ready TiltEstimator::made_ready(const TiltWitness& witness) const {
-  const double w =
+  const double width =
       std::log(witness.sight.angular_width / kNarrowest) / std::log(kWidest / kNarrowest) * kWidths;
-  return {.feet = feet_[static_cast<std::size_t>(std::clamp(w, 0.0, kWidths - 1.0))].data(),
-          .place = (witness.sight.down - kHighest) / kDownStep,
+  return {.feet = feet_[static_cast<std::size_t>(std::clamp(width, 0.0, kWidths - 1.0))].data(),
+          .down = witness.sight.down,
           .cos_bearing = std::cos(witness.bearing),
           .sin_bearing = std::sin(witness.bearing),
           .lean = witness.lean,
           .weight = witness.weight};
 }
 
-double TiltEstimator::feet(const Ready& witness, const GroundTilt& tilt) {
-  const double raised = tilt.raise(witness.cos_bearing, witness.sin_bearing) / kDownStep;
-  const double place = std::clamp(witness.place + raised, 0.0, kDowns - 1.001);
-  const auto i = static_cast<int>(place);
-  const float* at = witness.feet + i;
-  return at[0] + (place - i) * (at[1] - at[0]);
+// How likely feet there are under trunks of those widths, if the ground is raised so.
+double TiltEstimator::feet(const GroundTilt& ground) const {
+  double sum = 0;
+  for (const Ready& w : ready_) {
+    const double down = w.down + ground.raise(w.cos_bearing, w.sin_bearing);
+    const double place = std::clamp((down - kHighest) / kDownStep, 0.0, kDowns - 1.001);
+    const float* at = w.feet + static_cast<int>(place);
+    sum += w.weight * (at[0] + (place - static_cast<int>(place)) * (at[1] - at[0]));
+  }
+  return sum;
 }
 
-double TiltEstimator::lean(double off) const {
-  return leans_[static_cast<std::size_t>(std::min(std::abs(off) / kLeanStep, kLeans - 1.0))];
+// How likely those leans are, if the camera is tilted so.
+double TiltEstimator::lean(const GroundTilt& camera) const {
+  double sum = 0;
+  for (const Ready& w : ready_) {
+    const double off = std::abs(w.lean - camera.lean(w.cos_bearing, w.sin_bearing)) / kLeanStep;
+    sum += w.weight * leans_[static_cast<std::size_t>(std::min(off, kLeans - 1.0))];
+  }
+  return sum;
 }
 
-// The tilt of the highest value that can be reached from none by steps that get smaller.
+// Between the tilts that are weighed anything may be: a step's own variance adds to theirs.
+TiltEstimator::Hypothesis TiltEstimator::weigh(const ByTilt& values) const {
+  const auto highest = std::max_element(values.begin(), values.end());
+  double sum = 0, forward = 0, left = 0, squares = 0;
+  for (int i = 0; i < kTilts; ++i) {
+    const GroundTilt& tilt = tilts_[i];
+    const double weight = std::exp(values[i] - *highest);
+    sum += weight;
+    forward += weight * tilt.forward;
+    left += weight * tilt.left;
+    squares += weight * (tilt.forward * tilt.forward + tilt.left * tilt.left);
+  }
+  const double variance = (squares - (forward * forward + left * left) / sum) / sum / 2;
+  return {.log_probability = *highest + std::log(sum),
+          .likeliest = tilts_[highest - values.begin()],
+          .sigma = std::sqrt(variance + kStep * kStep / 12)};
+}
+
+// The tilt of the highest value that can be reached from `start` by steps that get smaller.
 template <class Value>
-TiltEstimator::Found TiltEstimator::climb(const Value& value, double start) {
-  Found best{{}, start};
-  for (double step = 0.04; step > 0.002;) {
-    const GroundTilt from = best.tilt;
+GroundTilt TiltEstimator::climb(const Value& value, const GroundTilt& start) {
+  GroundTilt best = start;
+  double highest = value(start);
+  for (double step = kStep / 2; step > 0.002;) {
+    const GroundTilt from = best;
     for (const auto& [x, y] :
          {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}}) {
-      const GroundTilt next{from.forward + x * step, from.left + y * step};
+      const GroundTilt next{.forward = from.forward + x * step, .left = from.left + y * step};
       const double here = value(next);
-      if (here > best.value) best = {next, here};
+      if (here <= highest) continue;
+      best = next;
+      highest = here;
     }
-    if (best.tilt.forward == from.forward && best.tilt.left == from.left) step /= 2;
+    if (best.forward == from.forward && best.left == from.left) step /= 2;
   }
   return best;
 }
@@ -92,24 +129,24 @@ GroundTilt TiltEstimator::estimate(std::span<const TiltWitness> witnesses) {
   if (witnesses.size() < kFewest) return {};
   ready_.clear();
   for (const TiltWitness& witness : witnesses) ready_.push_back(made_ready(witness));
-  const auto likelihood = [&](const GroundTilt& ground, const GroundTilt& camera) {
-    double sum = 0;
-    for (const Ready& w : ready_) {
-      sum +=
-          w.weight * (feet(w, ground) + lean(w.lean - camera.lean(w.cos_bearing, w.sin_bearing)));
-    }
-    return sum;
+  ByTilt tilted, sloping;
+  const double upright = lean({});  // as trunks are on a slope, too
+  for (int i = 0; i < kTilts; ++i) {
+    const double stands = feet(tilts_[i]);
+    tilted[i] = stands + lean(tilts_[i]) + log_prior(tilts_[i], kTiltSigma);
+    sloping[i] = stands + upright + log_prior(tilts_[i], kSlopeSigma);
+  }
+  const Hypothesis tilt = weigh(tilted), slope = weigh(sloping);
+  const bool is_slope = slope.log_probability > tilt.log_probability;
+  const Hypothesis& other = is_slope ? slope : tilt;
+  if (other.log_probability <= feet({}) + upright + kLevel) return {};
+  const auto value = [&](const GroundTilt& t) {
+    return is_slope ? feet(t) + log_prior(t, kSlopeSigma)
+                    : feet(t) + lean(t) + log_prior(t, kTiltSigma);
   };
-  const auto tilted = [&](const GroundTilt& t) {
-    return likelihood(t, t) - against(t, kTiltSigma);
-  };
-  const auto sloping = [&](const GroundTilt& t) {
-    return likelihood(t, {}) - against(t, kSlopeSigma);
-  };
-  const double none = likelihood({}, {});
-  const Found tilt = climb(tilted, none - kRare), slope = climb(sloping, none - kRare);
-  if (none >= std::max(tilt.value, slope.value)) return {};
-  return tilt.value > slope.value ? tilt.tilt : slope.tilt;
+  GroundTilt found = climb(value, other.likeliest);
+  found.sigma = other.sigma;
+  return found;
 }
 
 }  // namespace bole

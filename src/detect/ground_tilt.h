@@ -12,6 +12,7 @@ namespace bole {
 /// and pi/2: the robot's tilt against its usual stand, or a slope.
 struct GroundTilt {
   double forward = 0, left = 0;
+  double sigma = 0;  ///< of `raise`, a tangent, beside what the mount's calibration leaves open
 
   /// By how much ground at this bearing seems raised, a tangent.
   double raise(double bearing) const;
@@ -35,8 +36,14 @@ struct TiltWitness {
 
 /// Estimates the tilt from the trunks of one frame: by their feet, which under a wrong tilt would
 /// stand where no tree of their width is likely, and by their lean, which tells the robot's tilt
-/// from a slope. Says that there is none unless the trunks speak clearly for one: the mount is
-/// calibrated, and ten trunks know the tilt less well than it does.
+/// from a slope.
+///
+/// Three hypotheses are weighed by Bayes' rule: the mount is as calibrated and the ground level;
+/// the camera is tilted; the ground slopes. For the latter two the likelihood is summed over the
+/// tilts that there may be, so that a tilt must not only explain the trunks but do it better than
+/// chance would let one of so many. Says that there is none unless that is less probable than
+/// another hypothesis, as ten trunks know the tilt less well than a calibrated mount does; `sigma`
+/// tells how well.
 class TiltEstimator {
  public:
   explicit TiltEstimator(double height);
@@ -45,24 +52,29 @@ class TiltEstimator {
 
  private:
   static constexpr int kWidths = 24, kDowns = 181, kLeans = 64;
+  static constexpr int kReach = 5, kAcross = 2 * kReach + 1;  // steps from no tilt, from end to end
+  static constexpr int kTilts = kAcross * kAcross;            // that are weighed
 
   // A witness as one tilt after the other needs it.
   struct Ready {
     const float* feet;  // log likelihood of its width by depression
-    double place;       // of its depression among them
-    double cos_bearing, sin_bearing, lean, weight;
+    double down, cos_bearing, sin_bearing, lean, weight;
   };
-  struct Found {
-    GroundTilt tilt;
-    double value = 0;
+  using ByTilt = std::array<double, kTilts>;  // logarithms
+  struct Hypothesis {
+    double log_probability = 0;  // but for what it has in common with the others
+    GroundTilt likeliest;
+    double sigma = 0;  // in one direction
   };
 
   Ready made_ready(const TiltWitness& witness) const;
-  static double feet(const Ready& witness, const GroundTilt& tilt);
-  double lean(double off) const;
+  double feet(const GroundTilt& ground) const;
+  double lean(const GroundTilt& camera) const;
+  Hypothesis weigh(const ByTilt& values) const;
   template <class Value>
-  static Found climb(const Value& value, double start);
+  static GroundTilt climb(const Value& value, const GroundTilt& start);
 
+  std::array<GroundTilt, kTilts> tilts_;         // row by row of one `left`, from the least on
   std::vector<std::array<float, kDowns>> feet_;  // log likelihood by width and depression
   std::array<float, kLeans> leans_;              // log likelihood by lean
   std::vector<Ready> ready_;

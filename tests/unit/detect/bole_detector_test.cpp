@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "painted_panorama.h"
@@ -158,6 +161,42 @@ TEST(BoleDetector, KeepsATrunkOnRisingGroundAndSaysThatItsRangeIsUncertain) {
   EXPECT_GE(trees[0].range, 1.0F);
   EXPECT_LE(trees[0].range, 8.0F);
   EXPECT_GT(trees[0].range_sigma, 0.25F * trees[0].range);
+}
+
+// A wood all round on ground that rises ahead.
+std::vector<PaintedPanorama::Bar> wood(double slope) {
+  std::vector<PaintedPanorama::Bar> bars;
+  for (int i = 0; i < 20; ++i) {
+    const double bearing = -3 + 0.31 * i;
+    bars.push_back({bearing, 2.5 + 0.2 * (7 * i % 20), 0.3, 45, slope * std::cos(bearing)});
+  }
+  return bars;
+}
+
+std::vector<Tree> sure_trees(const std::vector<PaintedPanorama::Bar>& bars) {
+  PaintedPanorama panorama(usual());
+  for (const auto& bar : bars) panorama.plant(bar);
+  return sure_trees(panorama);
+}
+
+double sum_of_sigmas(const std::vector<Tree>& trees) {
+  return std::accumulate(trees.begin(), trees.end(), 0.0,
+                         [](double sum, const Tree& tree) { return sum + tree.range_sigma; });
+}
+
+TEST(BoleDetector, PlacesTreesOnASlopeAndSaysThatItKnowsLessOfTheirRange) {
+  const auto bars = wood(0.15);
+  const auto on_slope = sure_trees(bars), level = sure_trees(wood(0));
+  ASSERT_EQ(on_slope.size(), bars.size());
+  ASSERT_EQ(level.size(), bars.size());
+  for (const Tree& tree : on_slope) {
+    const auto bar = std::find_if(bars.begin(), bars.end(), [&](const auto& b) {
+      return std::abs(wrap_angle(tree.bearing - b.bearing)) < radians(1);
+    });
+    ASSERT_NE(bar, bars.end());
+    EXPECT_NEAR(tree.range, bar->range, 0.2 * bar->range);
+  }
+  EXPECT_GT(sum_of_sigmas(on_slope), 1.2 * sum_of_sigmas(level));
 }
 
 TEST(BoleDetector, SaysTheSameOfTheSameFrame) {

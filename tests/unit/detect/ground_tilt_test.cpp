@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "geometry/ground.h"
 
@@ -44,6 +45,21 @@ TEST(TiltEstimator, FindsThreeDegreesOfTiltFromFeetAndLean) {
 TEST(TiltEstimator, FindsASlopeFromFeetAlone) {
   const GroundTilt slope{0.1, 0.05};
   expect_near(TiltEstimator(kHeight).estimate(wood(25, slope, {})), slope, 0.04);
+}
+
+TEST(TiltEstimator, FindsSteepSlopesWhereverTheyRise) {
+  TiltEstimator estimator(kHeight);
+  for (int i = 0; i < 8; ++i) {
+    const GroundTilt slope{0.18 * std::cos(0.8 * i), 0.18 * std::sin(0.8 * i)};
+    expect_near(estimator.estimate(wood(25, slope, {})), slope, 0.05);
+  }
+}
+
+TEST(TiltEstimator, SaysThatItKnowsLessOfATiltThanTheMountOfNone) {
+  const GroundTilt tilt{0.052, 0};
+  TiltEstimator estimator(kHeight);
+  EXPECT_EQ(estimator.estimate(wood(15, {}, {})).sigma, 0);
+  EXPECT_GT(estimator.estimate(wood(15, tilt, tilt)).sigma, 0.01);
 }
 
 TEST(TiltEstimator, SaysNothingOnTwoTrees) {

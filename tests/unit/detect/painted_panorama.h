@@ -19,6 +19,7 @@ class PaintedPanorama {
   struct Bar {
     double bearing, range, diameter;
     int grey;
+    double raised = 0;  // the ground there, a tangent
   };
 
   explicit PaintedPanorama(const PanoramaGeometry& geometry, double height = 1.0)
@@ -41,8 +42,9 @@ class PaintedPanorama {
 
   void plant(const Bar& bar) {
     const double width = angular_width(bar.diameter, bar.range) * geometry_.focal();
-    const double foot =
-        geometry_.row_of_tangent(ground_tangent(bar.range - bar.diameter / 2, height_)) + 0.5;
+    const double foot = geometry_.row_of_tangent(
+                            ground_tangent(bar.range - bar.diameter / 2, height_) + bar.raised) +
+                        0.5;
     const double middle = geometry_.column_of_bearing(bar.bearing) + 0.5;
     for (int row = 0; row < geometry_.rows; ++row) {
       const double down = std::clamp(foot - row, 0.0, 1.0);
