@@ -129,20 +129,25 @@ GroundTilt TiltEstimator::estimate(std::span<const TiltWitness> witnesses) {
   if (witnesses.size() < kFewest) return {};
   ready_.clear();
   for (const TiltWitness& witness : witnesses) ready_.push_back(made_ready(witness));
-  ByTilt tilted, sloping;
   const double upright = lean({});  // as trunks are on a slope, too
+  const auto as_tilted = [&](const GroundTilt& t, double stands) {
+    return stands + lean(t) + log_prior(t, kTiltSigma);
+  };
+  const auto as_slope = [&](const GroundTilt& t, double stands) {
+    return stands + upright + log_prior(t, kSlopeSigma);
+  };
+  ByTilt tilted, sloping;
   for (int i = 0; i < kTilts; ++i) {
     const double stands = feet(tilts_[i]);
-    tilted[i] = stands + lean(tilts_[i]) + log_prior(tilts_[i], kTiltSigma);
-    sloping[i] = stands + upright + log_prior(tilts_[i], kSlopeSigma);
+    tilted[i] = as_tilted(tilts_[i], stands);
+    sloping[i] = as_slope(tilts_[i], stands);
   }
   const Hypothesis tilt = weigh(tilted), slope = weigh(sloping);
   const bool is_slope = slope.log_probability > tilt.log_probability;
   const Hypothesis& other = is_slope ? slope : tilt;
   if (other.log_probability <= feet({}) + upright + kLevel) return {};
   const auto value = [&](const GroundTilt& t) {
-    return is_slope ? feet(t) + log_prior(t, kSlopeSigma)
-                    : feet(t) + lean(t) + log_prior(t, kTiltSigma);
+    return is_slope ? as_slope(t, feet(t)) : as_tilted(t, feet(t));
   };
   GroundTilt found = climb(value, other.likeliest);
   found.sigma = other.sigma;
