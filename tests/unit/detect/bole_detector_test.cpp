@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <vector>
 
 #include "painted_panorama.h"
@@ -23,24 +24,33 @@ std::vector<Tree> sure_trees(const PaintedPanorama& panorama, const Search& sear
 
 PanoramaGeometry usual() { return full_panorama(1440, radians(27), 0.9, 1.0); }
 
+std::vector<Tree> sure_trees(const std::vector<PaintedPanorama::Bar>& bars) {
+  PaintedPanorama panorama(usual());
+  for (const auto& bar : bars) panorama.plant(bar);
+  return sure_trees(panorama);
+}
+
+// The likeliest one there; null for none. `trees` as detected: the likeliest first.
+const Tree* tree_at(std::span<const Tree> trees, double bearing, double tolerance = radians(1)) {
+  const auto tree = std::find_if(trees.begin(), trees.end(), [&](const Tree& t) {
+    return std::abs(wrap_angle(t.bearing - bearing)) <= tolerance;
+  });
+  return tree == trees.end() ? nullptr : &*tree;
+}
+
 void expect_found(const std::vector<Tree>& trees, const PaintedPanorama::Bar& bar) {
-  for (const Tree& tree : trees) {
-    if (std::abs(wrap_angle(tree.bearing - bar.bearing)) > radians(1)) continue;
-    EXPECT_NEAR(tree.range, bar.range, 0.04 * bar.range);
-    EXPECT_NEAR(tree.diameter, bar.diameter, 0.04);
-    EXPECT_NEAR(std::sin(tree.angular_width / 2), tree.diameter / (2 * tree.range), 1e-3);
-    EXPECT_GT(tree.range_sigma, 0);
-    return;
-  }
-  ADD_FAILURE() << "no tree at bearing " << bar.bearing;
+  const Tree* tree = tree_at(trees, bar.bearing);
+  ASSERT_NE(tree, nullptr) << "no tree at bearing " << bar.bearing;
+  EXPECT_NEAR(tree->range, bar.range, 0.04 * bar.range);
+  EXPECT_NEAR(tree->diameter, bar.diameter, 0.04);
+  EXPECT_NEAR(std::sin(tree->angular_width / 2), tree->diameter / (2 * tree->range), 1e-3);
+  EXPECT_GT(tree->range_sigma, 0);
 }
 
 TEST(BoleDetector, PlacesTrunks) {
-  PaintedPanorama panorama(usual());
-  const PaintedPanorama::Bar bars[] = {
+  const std::vector<PaintedPanorama::Bar> bars{
       {0.5, 3.0, 0.4, 45}, {-1.2, 5.0, 0.3, 50}, {2.0, 3.0, 0.35, 60}, {-2.4, 6.5, 0.5, 40}};
-  for (const auto& bar : bars) panorama.plant(bar);
-  const auto trees = sure_trees(panorama);
+  const auto trees = sure_trees(bars);
   for (const auto& bar : bars) expect_found(trees, bar);
   EXPECT_EQ(trees.size(), std::size(bars));
 }
@@ -63,11 +73,8 @@ ExpectedTrunk expected(const PaintedPanorama::Bar& bar) {
 }
 
 float score_at(std::span<const Tree> trees, double bearing) {
-  float best = 0;
-  for (const Tree& tree : trees)
-    if (std::abs(wrap_angle(tree.bearing - bearing)) < radians(1))
-      best = std::max(best, tree.score);
-  return best;
+  const Tree* tree = tree_at(trees, bearing);
+  return tree ? tree->score : 0;
 }
 
 TEST(BoleDetector, IsSurerOfTrunksThatItIsToldToExpect) {
@@ -93,10 +100,8 @@ TEST(BoleDetector, TakesTheWholeOfAHalfLitTrunkThatItIsToldToExpect) {
   panorama.plant({whole.bearing + width / 4, whole.range, whole.diameter / 2, 40});
   const auto detector = make_bole_detector(panorama.setup());
   const auto error_of_width = [&](std::span<const Tree> trees) {
-    for (const Tree& tree : trees)
-      if (std::abs(wrap_angle(tree.bearing - whole.bearing)) < width / 2)
-        return std::abs(tree.angular_width - width);
-    return width;
+    const Tree* tree = tree_at(trees, whole.bearing, width / 2);
+    return tree ? std::abs(tree->angular_width - width) : width;
   };
   const ExpectedTrunk there = expected(whole);
   EXPECT_GT(error_of_width(detector->detect(panorama.view())), 0.3 * width) << "the half, alone";
@@ -173,12 +178,6 @@ std::vector<PaintedPanorama::Bar> wood(double slope) {
   return bars;
 }
 
-std::vector<Tree> sure_trees(const std::vector<PaintedPanorama::Bar>& bars) {
-  PaintedPanorama panorama(usual());
-  for (const auto& bar : bars) panorama.plant(bar);
-  return sure_trees(panorama);
-}
-
 double sum_of_sigmas(const std::vector<Tree>& trees) {
   return std::accumulate(trees.begin(), trees.end(), 0.0,
                          [](double sum, const Tree& tree) { return sum + tree.range_sigma; });
@@ -189,12 +188,10 @@ TEST(BoleDetector, PlacesTreesOnASlopeAndSaysThatItKnowsLessOfTheirRange) {
   const auto on_slope = sure_trees(bars), level = sure_trees(wood(0));
   ASSERT_EQ(on_slope.size(), bars.size());
   ASSERT_EQ(level.size(), bars.size());
-  for (const Tree& tree : on_slope) {
-    const auto bar = std::find_if(bars.begin(), bars.end(), [&](const auto& b) {
-      return std::abs(wrap_angle(tree.bearing - b.bearing)) < radians(1);
-    });
-    ASSERT_NE(bar, bars.end());
-    EXPECT_NEAR(tree.range, bar->range, 0.2 * bar->range);
+  for (const auto& bar : bars) {
+    const Tree* tree = tree_at(on_slope, bar.bearing);
+    ASSERT_NE(tree, nullptr) << "no tree at bearing " << bar.bearing;
+    EXPECT_NEAR(tree->range, bar.range, 0.2 * bar.range);
   }
   EXPECT_GT(sum_of_sigmas(on_slope), 1.2 * sum_of_sigmas(level));
 }
