@@ -4,12 +4,13 @@
 #include <vector>
 
 #include "detect/detector.h"
+#include "detect/veil.h"
 
 namespace bole {
 
-/// The logarithm of a panorama's brightness, above black, in bands of four rows, with running sums
-/// along each band: what all templates and features read. In the logarithm a contrast does not
-/// depend on how much light falls on it.
+/// The logarithm of a panorama's brightness, above black and any veil, in bands of four rows, with
+/// running sums along each band: what all templates and features read. In the logarithm a contrast
+/// does not depend on how much light falls on it.
 ///
 /// Columns run beyond the panorama by `margin` on either side, continued round the turn, or by the
 /// border's value where the camera sees less than a turn.
@@ -35,6 +36,9 @@ class Bands {
 
   void compute(const PanoramaView& panorama);
 
+  /// Over the latest panorama, quarters of a grey level: see veil_over.
+  int veil() const { return veil_; }
+
   int count() const { return count_; }
   int width() const { return width_; }
   int margin() const { return margin_; }
@@ -57,10 +61,14 @@ class Bands {
 
  private:
   void extend(std::uint16_t* sums) const;
+  // By the sum of kRows pixels.
+  const std::uint16_t* logs() const { return log_.data() + kThickestVeil - veil_; }
 
   int count_, width_, margin_, pitch_, coarse_pitch_;
   bool wraps_;
-  std::vector<std::uint16_t> log_;      // of a sum of kRows pixels
+  SeenMap seen_pixels_;
+  int veil_ = 0;
+  std::vector<std::uint16_t> log_;      // of a sum of kRows pixels, from -kThickestVeil on
   std::vector<std::uint16_t> row_sum_;  // one band
   std::vector<std::uint16_t> sums_;     // count x pitch
   std::vector<std::int32_t> coarse_;    // count x coarse_pitch

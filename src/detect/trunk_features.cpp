@@ -24,9 +24,9 @@ FeatureReader::FeatureReader(const DetectorSetup& setup)
     : last_band_(setup.panorama.rows / Bands::kRows),
       wraps_(setup.panorama.wraps()),
       focal_(setup.panorama.focal()),
-      log_(kLogLevels) {
+      log_(kThickestVeil + kLogLevels, std::log(float{Bands::kBlackLevel})) {
   for (int i = 0; i < kLogLevels; ++i)
-    log_[i] = std::log(static_cast<float>(i) / 4 + Bands::kBlackLevel);
+    log_[kThickestVeil + i] = std::log(static_cast<float>(i) / 4 + Bands::kBlackLevel);
 }
 
 float FeatureReader::read_grid(const Bands& bands, const TrunkShape& shape, int first_band,
@@ -94,11 +94,11 @@ float FeatureReader::read_grid(const Bands& bands, const TrunkShape& shape, int 
   return spread;
 }
 
-void FeatureReader::read_foot(const PanoramaView& panorama, const TrunkShape& shape, float spread,
-                              float* out) const {
+void FeatureReader::read_foot(const Bands& bands, const PanoramaView& panorama,
+                              const TrunkShape& shape, float spread, float* out) const {
   static_assert(F::kFootRows == FootLines::kLines && F::kStrips == FootLines::kStrips);
   FootLines lines;
-  read_foot_lines(panorama, wraps_, log_.data(),
+  read_foot_lines(panorama, wraps_, log_above(bands.veil()),
                   {.row = shape.foot,
                    .middle = shape.centre(),
                    .lean = shape.slope(),
@@ -125,7 +125,7 @@ void FeatureReader::read(const Bands& bands, const PanoramaView& panorama, const
   const float spread = read_but_foot(bands, shape, fit, first_band, Care::full, levels, out);
   even_rows(levels, out.data());
   float* const foot = out.data() + F::kGrid;
-  read_foot(panorama, shape, spread, foot);
+  read_foot(bands, panorama, shape, spread, foot);
   out.back() = even_foot(std::max(spread, Bands::kLeastSpread), foot);
 }
 

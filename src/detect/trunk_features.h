@@ -40,8 +40,10 @@ class FeatureReader {
   /// contrast as they are.
   void glance(const Bands& bands, const TrunkShape& shape, const EdgeFit& fit, int first_band,
               TrunkFeatures::Values& out) const;
-  FootPatch::Values foot_patch(const PanoramaView& panorama, const TrunkShape& shape) const {
-    return read_foot_patch(panorama, wraps_, log_.data(), shape, focal_);
+  /// `bands`: those of the panorama.
+  FootPatch::Values foot_patch(const Bands& bands, const PanoramaView& panorama,
+                               const TrunkShape& shape) const {
+    return read_foot_patch(panorama, wraps_, log_above(bands.veil()), shape, focal_);
   }
 
  private:
@@ -52,13 +54,14 @@ class FeatureReader {
                       TrunkFeatures::Values& out) const;
   float read_grid(const Bands& bands, const TrunkShape& shape, int first_band, Care care,
                   float* out) const;
-  void read_foot(const PanoramaView& panorama, const TrunkShape& shape, float spread,
-                 float* out) const;
+  void read_foot(const Bands& bands, const PanoramaView& panorama, const TrunkShape& shape,
+                 float spread, float* out) const;
+  const float* log_above(int veil) const { return log_.data() + kThickestVeil - veil; }
 
   int last_band_;
   bool wraps_;
   double focal_;
-  std::vector<float> log_;  // of a quarter grey level
+  std::vector<float> log_;  // of quarters of a grey level, from -kThickestVeil on
 };
 
 }  // namespace bole

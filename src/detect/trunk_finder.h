@@ -67,7 +67,7 @@ class TrunkFinder {
   [[nodiscard]] bool glance(const TrunkShape& shape, const EdgeFit& fit,
                             TrunkFeatures::Values& out) const;
   FootPatch::Values foot_patch(const PanoramaView& panorama, const TrunkShape& shape) const {
-    return reader_.foot_patch(panorama, shape);
+    return reader_.foot_patch(bands_, panorama, shape);
   }
   /// Of the latest panorama that was searched.
   TrunkPatches patches(const TrunkShape& shape) const;

@@ -47,12 +47,13 @@ void expect_found(const std::vector<Tree>& trees, const PaintedPanorama::Bar& ba
   EXPECT_GT(tree->range_sigma, 0);
 }
 
+const std::vector<PaintedPanorama::Bar> kBars{
+    {0.5, 3.0, 0.4, 45}, {-1.2, 5.0, 0.3, 50}, {2.0, 3.0, 0.35, 60}, {-2.4, 6.5, 0.5, 40}};
+
 TEST(BoleDetector, PlacesTrunks) {
-  const std::vector<PaintedPanorama::Bar> bars{
-      {0.5, 3.0, 0.4, 45}, {-1.2, 5.0, 0.3, 50}, {2.0, 3.0, 0.35, 60}, {-2.4, 6.5, 0.5, 40}};
-  const auto trees = sure_trees(bars);
-  for (const auto& bar : bars) expect_found(trees, bar);
-  EXPECT_EQ(trees.size(), std::size(bars));
+  const auto trees = sure_trees(kBars);
+  for (const auto& bar : kBars) expect_found(trees, bar);
+  EXPECT_EQ(trees.size(), kBars.size());
 }
 
 TEST(BoleDetector, FindsATrunkAcrossTheSeam) {
@@ -194,6 +195,14 @@ TEST(BoleDetector, PlacesTreesOnASlopeAndSaysThatItKnowsLessOfTheirRange) {
     EXPECT_NEAR(tree->range, bar.range, 0.2 * bar.range);
   }
   EXPECT_GT(sum_of_sigmas(on_slope), 1.2 * sum_of_sigmas(level));
+}
+
+TEST(BoleDetector, FindsTrunksThroughFog) {
+  PaintedPanorama panorama(usual());
+  for (const auto& bar : kBars) panorama.plant(bar);
+  panorama.draw_veil(0.15, 190);
+  const auto trees = sure_trees(panorama);
+  for (const auto& bar : kBars) expect_found(trees, bar);
 }
 
 TEST(BoleDetector, SaysTheSameOfTheSameFrame) {

@@ -64,6 +64,13 @@ class PaintedPanorama {
     }
   }
 
+  /// What fog makes of it: so much of the light is left, and so many grey levels are added.
+  void draw_veil(double left, double added) {
+    for (std::uint8_t& pixel : pixels_) pixel = grey(left * pixel + added);
+  }
+  /// So many pixels, the lowest, are not seen.
+  void mask_last(std::size_t pixels) { std::fill_n(seen_.rbegin(), pixels, std::uint8_t{0}); }
+
   std::uint8_t& at(int row, int column) {
     return pixels_[static_cast<std::size_t>(row) * geometry_.width + column];
   }
