@@ -42,14 +42,7 @@ LibcameraSession::LibcameraSession(std::shared_ptr<libcamera::Camera> camera,
   }
 }
 
-LibcameraSession::~LibcameraSession() {
-  stop();
-  for (const Areas& areas : buffers_) {
-    for (const Area& area : areas) {
-      if (!area.mapped.empty()) ::munmap(area.mapped.data(), area.mapped.size());
-    }
-  }
-}
+LibcameraSession::~LibcameraSession() { stop(); }
 
 void LibcameraSession::start(libcamera::Stream* stream, const libcamera::ControlList& controls) {
   allocator_ = std::make_unique<libcamera::FrameBufferAllocator>(camera_);
@@ -84,9 +77,7 @@ void LibcameraSession::prepare(const libcamera::FrameBuffer& buffer) {
   for (std::size_t i = 0; i < buffer.planes().size(); ++i) {
     const libcamera::FrameBuffer::Plane& plane = buffer.planes()[i];
     const std::size_t length = std::size_t{plane.offset} + plane.length;
-    void* address = ::mmap(nullptr, length, PROT_READ, MAP_SHARED, plane.fd.get(), 0);
-    if (address == MAP_FAILED) fail("its buffers cannot be mapped", errno);
-    areas.at(i) = {plane.fd, {static_cast<std::byte*>(address), length}, plane.offset};
+    areas.at(i) = {plane.fd, DeviceMemory(plane.fd.get(), 0, length, PROT_READ), plane.offset};
   }
 }
 
@@ -134,10 +125,11 @@ std::optional<ImageView> LibcameraSession::view(const Completed& completed) cons
   std::array<std::span<const std::byte>, 2> filled;
   for (std::size_t i = 0; i < areas.size(); ++i) {
     const Area& area = areas.at(i);
-    if (area.mapped.empty()) continue;
+    const std::span<const std::byte> mapped = area.mapped.bytes();
+    if (mapped.empty()) continue;
     sync(area.fd, DMA_BUF_SYNC_START);
-    const std::size_t room = area.mapped.size() - area.offset;
-    filled.at(i) = area.mapped.subspan(area.offset, std::min(completed.bytes.at(i), room));
+    const std::size_t room = mapped.size() - area.offset;
+    filled.at(i) = mapped.subspan(area.offset, std::min(completed.bytes.at(i), room));
   }
   return view_buffer(layout_, filled);
 }
@@ -145,7 +137,7 @@ std::optional<ImageView> LibcameraSession::view(const Completed& completed) cons
 void LibcameraSession::give_back(int index) noexcept {
   const auto at = static_cast<std::size_t>(index);
   for (const Area& area : buffers_[at]) {
-    if (!area.mapped.empty()) sync(area.fd, DMA_BUF_SYNC_END);
+    if (!area.mapped.bytes().empty()) sync(area.fd, DMA_BUF_SYNC_END);
   }
   const std::lock_guard lock(running_mutex_);
   if (!running_) return;

@@ -13,6 +13,7 @@
 
 #include "base/wakeup.h"
 #include "capture/buffer_layout.h"
+#include "capture/device_memory.h"
 #include "capture/frame_source.h"
 #include "capture/libcamera/usb_camera.h"
 
@@ -70,7 +71,7 @@ class LibcameraSession : public FrameBuffers {
   // A buffer's memory areas in this process.
   struct Area {
     libcamera::SharedFD fd;
-    std::span<std::byte> mapped;
+    DeviceMemory mapped;
     std::size_t offset = 0;  // of the area in what is mapped
   };
   using Areas = std::array<Area, 2>;

@@ -36,24 +36,16 @@ V4l2Buffers::V4l2Buffers(V4l2Device device, const V4l2Format& format, int wanted
   if (error != 0) fail("gives no buffers", error);
   constexpr int kLeast = 2;
   if (granted < kLeast) throw CaptureError("gives too few buffers");
-  try {
-    for (int i = 0; i < granted; ++i) map(i);
-    for (int i = 0; i < granted; ++i) {
-      if (const int refused = queue(i)) fail("takes no buffer", refused);
-    }
-    int type = format_.type;
-    if (const int refused = device_.ask(VIDIOC_STREAMON, &type)) fail("does not start", refused);
-  } catch (...) {
-    unmap();
-    throw;
+  for (int i = 0; i < granted; ++i) map(i);
+  for (int i = 0; i < granted; ++i) {
+    if (const int refused = queue(i)) fail("takes no buffer", refused);
   }
+  int type = format_.type;
+  if (const int refused = device_.ask(VIDIOC_STREAMON, &type)) fail("does not start", refused);
   streaming_ = true;
 }
 
-V4l2Buffers::~V4l2Buffers() {
-  stop();
-  unmap();
-}
+V4l2Buffers::~V4l2Buffers() { stop(); }
 
 v4l2_buffer V4l2Buffers::describe(int index,
                                   std::array<v4l2_plane, VIDEO_MAX_PLANES>& planes) const {
@@ -72,26 +64,14 @@ void V4l2Buffers::map(int index) {
   std::array<v4l2_plane, VIDEO_MAX_PLANES> planes{};
   v4l2_buffer buffer = describe(index, planes);
   if (const int error = device_.ask(VIDIOC_QUERYBUF, &buffer)) fail("describes no buffer", error);
-  Mapping& mapping = mappings_.emplace_back();
+  Areas& areas = buffers_.emplace_back();
   for (int plane = 0; plane < format_.layout.memory_planes; ++plane) {
     const auto at = static_cast<std::size_t>(plane);
     const std::size_t length = multiplanar() ? planes.at(at).length : buffer.length;
     const auto offset =
         static_cast<off_t>(multiplanar() ? planes.at(at).m.mem_offset : buffer.m.offset);
-    void* address =
-        ::mmap(nullptr, length, PROT_READ | PROT_WRITE, MAP_SHARED, device_.fd(), offset);
-    if (address == MAP_FAILED) fail("its buffers cannot be mapped", errno);
-    mapping.areas.at(at) = {static_cast<std::byte*>(address), length};
+    areas.at(at) = DeviceMemory(device_.fd(), offset, length, PROT_READ | PROT_WRITE);
   }
-}
-
-void V4l2Buffers::unmap() noexcept {
-  for (const Mapping& mapping : mappings_) {
-    for (const std::span<std::byte> area : mapping.areas) {
-      if (!area.empty()) ::munmap(area.data(), area.size());
-    }
-  }
-  mappings_.clear();
 }
 
 int V4l2Buffers::queue(int index) noexcept {
@@ -104,20 +84,20 @@ int V4l2Buffers::queue(int index) noexcept {
 int V4l2Buffers::dequeue(v4l2_buffer& buffer, std::array<v4l2_plane, VIDEO_MAX_PLANES>& planes) {
   buffer = describe(0, planes);
   const int error = device_.call(VIDIOC_DQBUF, &buffer);
-  if (error == 0 && buffer.index >= mappings_.size()) return EIO;
+  if (error == 0 && buffer.index >= buffers_.size()) return EIO;
   return error;
 }
 
 std::optional<ImageView> V4l2Buffers::view(const v4l2_buffer& buffer) const {
-  const Mapping& mapping = mappings_.at(buffer.index);
+  const Areas& areas = buffers_.at(buffer.index);
   std::array<std::span<const std::byte>, 2> filled;
   for (std::size_t i = 0; i < filled.size(); ++i) {
-    const std::size_t size = mapping.areas.at(i).size();
-    if (size == 0) continue;
+    const std::span<const std::byte> area = areas.at(i).bytes();
+    if (area.empty()) continue;
     const std::size_t begin = multiplanar() ? buffer.m.planes[i].data_offset : 0;
     const std::size_t end = multiplanar() ? buffer.m.planes[i].bytesused : buffer.bytesused;
-    if (begin > end || end > size) return std::nullopt;
-    filled.at(i) = mapping.areas.at(i).subspan(begin, end - begin);
+    if (begin > end || end > area.size()) return std::nullopt;
+    filled.at(i) = area.subspan(begin, end - begin);
   }
   return view_buffer(format_.layout, filled);
 }

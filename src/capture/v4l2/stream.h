@@ -3,9 +3,9 @@
 #include <array>
 #include <memory>
 #include <mutex>
-#include <span>
 #include <vector>
 
+#include "capture/device_memory.h"
 #include "capture/frame_source.h"
 #include "capture/v4l2/format.h"
 
@@ -22,7 +22,7 @@ class V4l2Buffers : public FrameBuffers {
   V4l2Buffers& operator=(const V4l2Buffers&) = delete;
   ~V4l2Buffers() override;
 
-  int count() const { return static_cast<int>(mappings_.size()); }
+  int count() const { return static_cast<int>(buffers_.size()); }
   int fd() const { return device_.fd(); }
   const V4l2Device& device() const { return device_; }
 
@@ -35,20 +35,16 @@ class V4l2Buffers : public FrameBuffers {
   void stop() noexcept;
 
  private:
-  // The memory areas of one buffer.
-  struct Mapping {
-    std::array<std::span<std::byte>, 2> areas;
-  };
+  using Areas = std::array<DeviceMemory, 2>;  // of one buffer
 
   void map(int index);
-  void unmap() noexcept;
   int queue(int index) noexcept;
   v4l2_buffer describe(int index, std::array<v4l2_plane, VIDEO_MAX_PLANES>& planes) const;
   bool multiplanar() const { return format_.type == V4L2_BUF_TYPE_VIDEO_CAPTURE_MPLANE; }
 
   V4l2Device device_;
   const V4l2Format format_;
-  std::vector<Mapping> mappings_;
+  std::vector<Areas> buffers_;
   std::mutex mutex_;  // of streaming_, and of the device's end
   bool streaming_ = false;
 };
