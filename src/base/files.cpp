@@ -1,7 +1,6 @@
 #include "base/files.h"
 
 #include <fcntl.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -85,20 +84,6 @@ class TemporaryFile {
 
 UniqueFd::~UniqueFd() {
   if (fd_ >= 0) ::close(fd_);
-}
-
-MappedFile::MappedFile(const std::filesystem::path& path) {
-  const OpenedFile file = open_regular(path);
-  if (file.size == 0) throw ConfigError(path, "", "is empty", "build it anew");
-  void* address = ::mmap(nullptr, file.size, PROT_READ, MAP_SHARED, file.fd.get(), 0);
-  if (address == MAP_FAILED) {
-    throw ConfigError(path, "", "cannot be mapped: " + error_text(errno), "");
-  }
-  bytes_ = {static_cast<const std::byte*>(address), file.size};
-}
-
-MappedFile::~MappedFile() {
-  if (!bytes_.empty()) ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
 }
 
 std::vector<std::byte> read_file(const std::filesystem::path& path, std::size_t max_bytes) {

@@ -31,27 +31,6 @@ class UniqueFd {
   int fd_ = -1;
 };
 
-/// A whole file mapped read-only; unmapped when dropped.
-class MappedFile {
- public:
-  MappedFile() = default;
-  /// Throws ConfigError when the file cannot be opened or is empty.
-  explicit MappedFile(const std::filesystem::path& path);
-  MappedFile(MappedFile&& other) noexcept : bytes_(std::exchange(other.bytes_, {})) {}
-  MappedFile& operator=(MappedFile&& other) noexcept {
-    std::swap(bytes_, other.bytes_);
-    return *this;
-  }
-  MappedFile(const MappedFile&) = delete;
-  MappedFile& operator=(const MappedFile&) = delete;
-  ~MappedFile();
-
-  std::span<const std::byte> bytes() const { return bytes_; }
-
- private:
-  std::span<const std::byte> bytes_;
-};
-
 /// The bytes of a regular file. Throws ConfigError when it is missing, unreadable, not a regular
 /// file or larger than `max_bytes`.
 std::vector<std::byte> read_file(const std::filesystem::path& path, std::size_t max_bytes);

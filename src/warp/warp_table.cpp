@@ -6,12 +6,14 @@
 
 #include "base/checksum.h"
 #include "base/errors.h"
+#include "base/files.h"
 #include "warp/warp_table_file.h"
 
 namespace bole {
 namespace {
 
 constexpr std::size_t kAlignment = 64;
+constexpr std::size_t kLargestFile = std::size_t{1} << 30;
 constexpr std::size_t kCrcStart = offsetof(WarpTableHead, bytes);
 constexpr std::string_view kRemedy = "build it anew: bolectl lut build";
 
@@ -98,12 +100,12 @@ std::vector<std::byte> warp_table_bytes(WarpTableContent content) {
   return bytes;
 }
 
-WarpTable::WarpTable(Storage storage, const std::string& file, std::uint32_t digest)
-    : storage_(std::move(storage)) {
+WarpTable::WarpTable(std::vector<std::byte> bytes, const std::string& file, std::uint32_t digest)
+    : bytes_(std::move(bytes)) {
   const auto require = [&file](bool condition, const char* problem) {
     if (!condition) throw ConfigError(file, "", problem, std::string(kRemedy));
   };
-  const std::span<const std::byte> all = bytes();
+  const std::span<const std::byte> all = bytes_;
   WarpTableHead head;
   require(all.size() >= sizeof head, "is too short for a warp table");
   std::memcpy(&head, all.data(), sizeof head);
@@ -138,7 +140,7 @@ WarpTable::WarpTable(Storage storage, const std::string& file, std::uint32_t dig
 }
 
 WarpTable WarpTable::load(const std::filesystem::path& path, std::uint32_t digest) {
-  return {MappedFile(path), path, digest};
+  return {read_file(path, kLargestFile), path, digest};
 }
 
 WarpTable WarpTable::parse(std::vector<std::byte> bytes, const std::string& file,
@@ -147,12 +149,7 @@ WarpTable WarpTable::parse(std::vector<std::byte> bytes, const std::string& file
 }
 
 void WarpTable::store(const std::filesystem::path& path) const {
-  write_file_atomically(path, bytes());
-}
-
-std::span<const std::byte> WarpTable::bytes() const {
-  if (const auto* mapped = std::get_if<MappedFile>(&storage_)) return mapped->bytes();
-  return std::get<std::vector<std::byte>>(storage_);
+  write_file_atomically(path, bytes_);
 }
 
 Pixel WarpTable::source(int row, int column) const {

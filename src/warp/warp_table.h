@@ -6,10 +6,8 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
-#include "base/files.h"
 #include "geometry/panorama_view.h"
 #include "warp/camera_files.h"
 
@@ -54,8 +52,9 @@ struct WarpStray {
 /// A column without any takes over the nearest column that has some; its SeenRows are empty.
 class WarpTable {
  public:
-  /// Maps a stored table read-only. Throws ConfigError when the file is damaged, of another
-  /// version, or was built for another camera than the one with `digest`.
+  /// Reads a stored table; what becomes of the file afterwards is nothing to it. Throws ConfigError
+  /// when the file is damaged, of another version, or was built for another camera than the one
+  /// with `digest`.
   static WarpTable load(const std::filesystem::path& path, std::uint32_t digest);
   /// As load, from the file's bytes.
   static WarpTable parse(std::vector<std::byte> bytes, const std::string& file,
@@ -68,7 +67,7 @@ class WarpTable {
   ImageSize image_size() const { return image_size_; }
   std::uint32_t digest() const { return digest_; }
   /// The table as it stands in a file.
-  std::span<const std::byte> bytes() const;
+  std::span<const std::byte> bytes() const { return bytes_; }
 
   int strips() const { return (panorama_.rows + kTileRows - 1) / kTileRows; }
   int tiles_per_strip() const { return (panorama_.width + kTileColumns - 1) / kTileColumns; }
@@ -84,11 +83,10 @@ class WarpTable {
   Pixel source(int row, int column) const;
 
  private:
-  using Storage = std::variant<std::vector<std::byte>, MappedFile>;
-  WarpTable(Storage storage, const std::string& file, std::uint32_t digest);
+  WarpTable(std::vector<std::byte> bytes, const std::string& file, std::uint32_t digest);
   friend WarpTable build_warp_table(const Camera& camera);
 
-  Storage storage_;
+  std::vector<std::byte> bytes_;
   PanoramaGeometry panorama_;
   ImageSize image_size_;
   std::uint32_t digest_ = 0;

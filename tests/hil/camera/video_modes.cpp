@@ -69,8 +69,9 @@ std::vector<std::span<const uint8_t>> split_jpegs(std::span<const uint8_t> bytes
 
 FrameSize load_frames(const PixelFormat& format, unsigned width, unsigned height,
                       const std::string& path) {
-  bole::MappedFile file(path);
-  const std::span bytes(reinterpret_cast<const uint8_t*>(file.bytes().data()), file.bytes().size());
+  constexpr size_t kLargestFile = size_t{256} << 20;
+  std::vector<std::byte> file = bole::read_file(path, kLargestFile);
+  const std::span bytes(reinterpret_cast<const uint8_t*>(file.data()), file.size());
   const size_t raw_size = size_t{width} * height * format.bits_per_pixel / 8;
   auto frames = format.is_jpeg() ? split_jpegs(bytes) : split_raw(bytes, raw_size);
   if (frames.empty()) throw std::runtime_error(path + ": holds no whole frame");

@@ -25,7 +25,7 @@ struct FrameSize {
   unsigned width;
   unsigned height;
   uint32_t max_bytes;  // of the largest frame
-  bole::MappedFile file;
+  std::vector<std::byte> file;
   std::vector<std::span<const uint8_t>> frames;  // views into `file`
 };
 

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/files.h"
 #include "geometry/angles.h"
 #include "unit/warp/test_cameras.h"
 

@@ -141,15 +141,26 @@ TEST(WarpTable, TheHorizonRowOfAPhotographIsThePanoramasHorizon) {
               50 + off * focal_px / table.panorama().focal(), 0.05);
 }
 
-TEST(WarpTable, StoredAndMappedIsTheSame) {
+TEST(WarpTable, StoredAndLoadedIsTheSame) {
   const test::TemporaryFolder folder;
   const Camera camera = load_camera(write_small_camera(folder));
   const WarpTable built = build_warp_table(camera);
   built.store(folder.path() / "new" / "table");
-  const WarpTable mapped = WarpTable::load(folder.path() / "new" / "table", camera.digest);
-  EXPECT_EQ(mapped.panorama(), built.panorama());
-  EXPECT_EQ(mapped.image_size(), built.image_size());
-  EXPECT_EQ(copy_of(mapped.bytes()), copy_of(built.bytes()));
+  const WarpTable loaded = WarpTable::load(folder.path() / "new" / "table", camera.digest);
+  EXPECT_EQ(loaded.panorama(), built.panorama());
+  EXPECT_EQ(loaded.image_size(), built.image_size());
+  EXPECT_EQ(copy_of(loaded.bytes()), copy_of(built.bytes()));
+}
+
+TEST(WarpTable, DoesNotCareWhatBecomesOfItsFile) {
+  const test::TemporaryFolder folder;
+  const Camera camera = load_camera(write_small_camera(folder));
+  const WarpTable built = build_warp_table(camera);
+  built.store(folder.path() / "table");
+  const WarpTable loaded = WarpTable::load(folder.path() / "table", camera.digest);
+  // In place, as cp does it.
+  std::ofstream(folder.path() / "table", std::ios::trunc) << "another";
+  EXPECT_EQ(copy_of(loaded.bytes()), copy_of(built.bytes()));
 }
 
 TEST(WarpTable, OneDamagedBitAnywhereIsRefused) {
