@@ -275,13 +275,16 @@ void TrunkFinder::look_where_expected(const PanoramaView& panorama,
   }
 }
 
-// Whether a trunk takes up these columns, wherever its foot is.
+// Whether a trunk takes up these columns and ends there: one that ends elsewhere is asked to stand
+// up to what is known of its foot.
 bool TrunkFinder::has_outline(const TrunkShape& shape, const Candidate& outline) const {
   constexpr float kAside = 0.25F, kOfWidth = 0.25F;  // of the width, of its logarithm
+  constexpr float kOfFoot = 1.5F;                    // of foot_unit
   const float middle = shape.centre() + shape.slope() * (outline.foot - shape.foot);
   const float aside = middle - (outline.left + 0.5F * outline.width);
   return std::abs(aside - whole_turns(aside)) < kAside * outline.width &&
-         std::abs(std::log(shape.width() / outline.width)) < kOfWidth;
+         std::abs(std::log(shape.width() / outline.width)) < kOfWidth &&
+         std::abs(shape.foot - outline.foot) < kOfFoot * foot_unit(shape, focal_);
 }
 
 // What of a distance between columns is whole turns; std::round would be a call.

@@ -197,6 +197,30 @@ TEST(BoleDetector, PlacesTreesOnASlopeAndSaysThatItKnowsLessOfTheirRange) {
   EXPECT_GT(sum_of_sigmas(on_slope), 1.2 * sum_of_sigmas(level));
 }
 
+TEST(BoleDetector, KeepsToAKnownFootThatGrassHides) {
+  const PanoramaGeometry geometry = usual();
+  const PaintedPanorama::Bar bar{0.5, 4.0, 0.4, 45};
+  PaintedPanorama grass(geometry), panorama(geometry);
+  panorama.plant(bar);
+  const ExpectedTrunk there = expected(bar);
+  const int foot = static_cast<int>(geometry.row_of_tangent(std::tan(there.base_elevation)));
+  // Half of it shows between the blades.
+  for (int row = foot - 20; row <= foot; ++row) {
+    for (int x = 0; x < geometry.width; ++x) {
+      const int both = panorama.at(row, x) + grass.at(row, x);
+      panorama.at(row, x) = static_cast<std::uint8_t>(both / 2);
+    }
+  }
+  const auto detector = make_bole_detector(panorama.setup());
+  const auto error_of_range = [&](std::span<const Tree> trees) {
+    const Tree* tree = tree_at(trees, bar.bearing);
+    return tree ? std::abs(tree->range - bar.range) : bar.range;
+  };
+  const double alone = error_of_range(detector->detect(panorama.view()));
+  const double told = error_of_range(detector->detect(panorama.view(), {&there, 1}));
+  EXPECT_LT(told, 0.5 * alone);
+}
+
 TEST(BoleDetector, FindsTrunksThroughFog) {
   PaintedPanorama panorama(usual());
   for (const auto& bar : kBars) panorama.plant(bar);
