@@ -156,7 +156,8 @@ range_min_m = 1.5
     run = bolectl("calib", "mount", "--camera", camera, tmp_path / "frames")
     assert run.returncode == 0, run.stderr
     row, sigma = map(float, re.search(r"(?m)^horizon_row 290.0 -> (\S+) \S+ (\S+)", run.stdout).groups())
-    assert abs(row - 275) < 2.5 * sigma < 30
+    # On slopes of up to 14 degrees, which a camera that looks one way can hardly tell from a pitch.
+    assert abs(row - 275) < 3 * sigma < 30
     assert "pitch_deg" not in run.stdout
 
 
