@@ -6,7 +6,7 @@
 #include "base/errors.h"
 #include "commands/commands.h"
 #include "commands/progress.h"
-#include "detect/tracker.h"
+#include "detect/tracking/tracker.h"
 #include "evaluate/evaluation_plots.h"
 
 namespace bole {

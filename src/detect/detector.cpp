@@ -1,7 +1,7 @@
 #include "detect/detector.h"
 
 #include "detect/bole_detector.h"
-#include "detect/paper.h"
+#include "detect/paper/paper.h"
 
 namespace bole {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "detect/close_look.h"
-#include "detect/dense_layer.h"
-#include "detect/last_look.h"
+#include "detect/network/close_look.h"
+#include "detect/network/dense_layer.h"
+#include "detect/network/last_look.h"
 #include "geometry/ground.h"
 
 namespace bole {

@@ -3,11 +3,11 @@
 #include <span>
 #include <vector>
 
-#include "detect/network.h"
-#include "detect/templates.h"
-#include "detect/trunk_features.h"
-#include "detect/trunk_patches.h"
-#include "detect/trunk_shape.h"
+#include "detect/contrast/templates.h"
+#include "detect/contrast/trunk_shape.h"
+#include "detect/network/network.h"
+#include "detect/network/trunk_features.h"
+#include "detect/network/trunk_patches.h"
 
 namespace bole {
 

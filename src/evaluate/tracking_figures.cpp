@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "detect/assignment.h"
+#include "detect/tracking/assignment.h"
 #include "evaluate/matching.h"
 
 namespace bole {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "detect/detector.h"
-#include "detect/tracker.h"
+#include "detect/tracking/tracker.h"
 #include "detect/vision_health.h"
 #include "publish/encoder.h"
 #include "service/frame_time.h"

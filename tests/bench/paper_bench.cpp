@@ -3,7 +3,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "bench/bench_scene.h"
-#include "detect/paper_templates.h"
+#include "detect/paper/paper_templates.h"
 #include "warp/warper.h"
 
 namespace bole::bench {

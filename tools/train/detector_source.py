@@ -14,7 +14,7 @@ def constant(name, file):
     return float(re.search(rf"\b{name} = ([\d.]+)F?;", (ROOT / file).read_text())[1])
 
 
-LEAK = constant("kLeak", "src/detect/dense_layer.h")
+LEAK = constant("kLeak", "src/detect/network/dense_layer.h")
 
 
 def numbers(values):

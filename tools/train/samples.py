@@ -9,7 +9,7 @@ from detector_source import constant
 
 HEAD = int(constant("kHead", "tools/train/dump_candidates.cpp"))
 HEIGHTS, ACROSS, FOOT_ROWS, STRIPS, NUMBERS, ROW_NUMBERS = (
-    int(constant(name, "src/detect/trunk_features.h"))
+    int(constant(name, "src/detect/network/trunk_features.h"))
     for name in ("kHeights", "kAcross", "kFootRows", "kStrips", "kNumbers", "kRowNumbers"))
 GRID = HEIGHTS * ACROSS
 FOOT = slice(GRID, GRID + FOOT_ROWS * STRIPS)

@@ -23,8 +23,8 @@ from samples import (ACROSS, FEATURES, FOOT, GRID, HEIGHTS, LIMIT, MIRRORED_HEAD
 
 HIDDEN, GLANCE_HIDDEN = (192, 48), (48,)
 SPREAD_NUMBER = 2  # of the grid, log brightness
-LEAST_SPREAD = constant("kLeastSpread", "src/detect/bands.h")
-LEAST_ROW_SPREAD = constant("kLeastSpread", "src/detect/row_contrasts.cpp")
+LEAST_SPREAD = constant("kLeastSpread", "src/detect/contrast/bands.h")
+LEAST_ROW_SPREAD = constant("kLeastSpread", "src/detect/network/row_contrasts.cpp")
 EPOCHS, LAST_EPOCHS, BATCH, DECAY, NOISE = 14, 2, 2048, 1e-4, 0.1
 RATE, LAST_RATE, WARM_UP = 3e-3, 1e-5, 200  # the learning rate's peak and end; steps to the peak
 
@@ -127,10 +127,10 @@ def fit(head, x, shown, mirror, hidden, path):
 
 
 def main():
-    options = parser(__doc__, "weights.inc and glance_weights.inc")
-    options.add_argument("--only", choices=["weights", "glance_weights"])
+    options = parser(__doc__, "look_weights.inc and glance_weights.inc")
+    options.add_argument("--only", choices=["look_weights", "glance_weights"])
     arguments = options.parse_args()
-    networks = {"weights": (lambda x: x, mirror(), HIDDEN),
+    networks = {"look_weights": (lambda x: x, mirror(), HIDDEN),
                 "glance_weights": (at_a_glance, mirror_at_a_glance(), GLANCE_HIDDEN)}
     if arguments.only:
         networks = {arguments.only: networks[arguments.only]}

@@ -21,8 +21,8 @@ from likelihood import OUTPUTS, loss, report
 from samples import (FEATURES, LIMIT, MIRRORED_HEAD, Standardised, load, mirror,
                      of_held_out_frames, weighed)
 
-SIDE = int(constant("kSide", "src/detect/trunk_patches.h"))
-CELL_UNITS = constant("kUnits", "src/detect/trunk_patches.h")
+SIDE = int(constant("kSide", "src/detect/network/trunk_patches.h"))
+CELL_UNITS = constant("kUnits", "src/detect/network/trunk_patches.h")
 PATCHES = ("trunk", "around")
 CHANNELS = (1, 16, 32, 48, 64)
 LAYERS = ("First", "Second", "Third", "Fourth")
@@ -32,7 +32,7 @@ EPOCHS, BATCH, RATE, DECAY, NOISE = 20, 1024, 3e-3, 1e-2, 0.1
 WITHOUT_FEATURES = 0.3  # share of the samples
 # What whole numbers leave room for: of a unit, and of the sum of a unit's weights.
 MOST_UNIT = 3.5
-MOST_WEIGHTS = 0.99 * constant("kMostWeightsOfUnit", "src/detect/dense_layer.h")
+MOST_WEIGHTS = 0.99 * constant("kMostWeightsOfUnit", "src/detect/network/dense_layer.h")
 
 
 def leaky(x):

@@ -17,7 +17,7 @@ from likelihood import OUTPUTS, errors, left_of_shifts, shifts_loss
 from samples import FEATURES, Standardised, load, mirror, of_held_out_frames, weighed
 from train import train, write
 
-PATCH_ROWS, PATCH_ACROSS = (int(constant(name, "src/detect/foot_patch.h"))
+PATCH_ROWS, PATCH_ACROSS = (int(constant(name, "src/detect/network/foot_patch.h"))
                             for name in ("kRows", "kAcross"))
 PATCH = PATCH_ROWS * PATCH_ACROSS
 FIRST, SECOND = 96, 48

@@ -1,4 +1,4 @@
-#include "detect/assignment.h"
+#include "detect/tracking/assignment.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <vector>
 
-#include "detect/band_kernels.h"
-#include "detect/bands.h"
-#include "detect/edge_kernels.h"
-#include "detect/edge_search.h"
-#include "detect/foot_kernels.h"
-#include "detect/grid_kernels.h"
-#include "detect/row_contrasts.h"
-#include "detect/template_kernels.h"
+#include "detect/contrast/band_kernels.h"
+#include "detect/contrast/bands.h"
+#include "detect/contrast/edge_kernels.h"
+#include "detect/contrast/edge_search.h"
+#include "detect/contrast/template_kernels.h"
+#include "detect/network/foot_kernels.h"
+#include "detect/network/grid_kernels.h"
+#include "detect/network/row_contrasts.h"
 #include "each_target.h"
 #include "simulate/noise.h"
 

@@ -1,4 +1,4 @@
-#include "detect/foot_patch.h"
+#include "detect/network/foot_patch.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "detect/foot_kernels.h"
+#include "detect/network/foot_kernels.h"
 #include "painted_panorama.h"
 
 namespace bole {

@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "detect/dense_layer.h"
-#include "detect/patch_kernels.h"
+#include "detect/network/dense_layer.h"
+#include "detect/network/patch_kernels.h"
 #include "each_target.h"
 #include "simulate/noise.h"
 

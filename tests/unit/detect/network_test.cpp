@@ -1,4 +1,4 @@
-#include "detect/network.h"
+#include "detect/network/network.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "detect/close_look.h"
-#include "detect/last_look.h"
+#include "detect/network/close_look.h"
+#include "detect/network/last_look.h"
 #include "golden_file.h"
 
 namespace bole {

@@ -1,4 +1,4 @@
-#include "detect/paper_candidates.h"
+#include "detect/paper/paper_candidates.h"
 
 #include <gmock/gmock.h>
 

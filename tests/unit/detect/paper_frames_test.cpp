@@ -6,7 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "detect/paper_scores.h"
+#include "detect/paper/paper_scores.h"
 #include "evaluate/image_detector.h"
 #include "support/shared_camera.h"
 #include "unit/detect/paper_oracle.h"

@@ -2,7 +2,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "detect/paper_templates.h"
+#include "detect/paper/paper_templates.h"
 
 namespace bole {
 

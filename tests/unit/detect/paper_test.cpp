@@ -1,4 +1,4 @@
-#include "detect/paper.h"
+#include "detect/paper/paper.h"
 
 #include <gmock/gmock.h>
 

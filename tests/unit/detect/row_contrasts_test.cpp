@@ -1,4 +1,4 @@
-#include "detect/row_contrasts.h"
+#include "detect/network/row_contrasts.h"
 
 #include <gtest/gtest.h>
 

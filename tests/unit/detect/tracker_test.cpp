@@ -1,4 +1,4 @@
-#include "detect/tracker.h"
+#include "detect/tracking/tracker.h"
 
 #include <gtest/gtest.h>
 

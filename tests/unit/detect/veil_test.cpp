@@ -1,4 +1,4 @@
-#include "detect/veil.h"
+#include "detect/contrast/veil.h"
 
 #include <gtest/gtest.h>
 
