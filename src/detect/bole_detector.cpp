@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "detect/ground_tilt.h"
+#include "detect/log_odds.h"
 #include "detect/range_posterior.h"
 #include "detect/tilt_witness.h"
 #include "detect/trunk_finder.h"
@@ -16,6 +17,7 @@ namespace {
 constexpr float kLeastScore = 0.05F;
 constexpr float kHardly = 0.02F;  // probability that is not worth a place
 constexpr std::size_t kMostExpected = 64;
+constexpr std::size_t kMostTrees = 256;
 
 // What scripts/calibration fits on drives through cameras that nothing was trained on. Where many
 // trees are seen, what looks a little like one is one more often than elsewhere; `seen` is how many
@@ -36,8 +38,8 @@ class BoleDetector final : public Detector {
         tilt_(setup.height),
         finder_(setup) {
     outlines_.reserve(2 * kMostExpected);
-    trees_.reserve(256);
-    witnesses_.reserve(256);
+    trees_.reserve(kMostTrees);
+    witnesses_.reserve(TiltEstimator::kMostWitnesses);
   }
 
  private:
@@ -50,7 +52,7 @@ class BoleDetector final : public Detector {
     double seen = 0;
     for (const Trunk& trunk : trunks) {
       // Its place can only make it less probable.
-      if (probability(trunk.logit) < kHardly || trees_.size() == trees_.capacity()) continue;
+      if (probability(trunk.logit) < kHardly || trees_.size() == kMostTrees) continue;
       trees_.push_back(tree_of(trunk, tilt));
       seen += trees_.back().score;
     }
@@ -96,7 +98,7 @@ void BoleDetector::outline(std::span<const ExpectedTrunk> expected) {
 GroundTilt BoleDetector::tilt_of(std::span<const Trunk> trunks) {
   witnesses_.clear();
   for (const Trunk& trunk : trunks) {
-    if (witnesses_.size() == witnesses_.capacity()) break;
+    if (witnesses_.size() == TiltEstimator::kMostWitnesses) break;
     if (const auto witness = witness_of(trunk, panorama_)) witnesses_.push_back(*witness);
   }
   return tilt_.estimate(witnesses_);

@@ -12,15 +12,17 @@
 
 namespace bole {
 
-/// What stays the same from frame to frame. The seen map must outlive the detector.
+/// What stays the same from frame to frame.
 struct DetectorSetup {
   PanoramaGeometry panorama;
-  SeenMap seen;
+  SeenMap seen;         ///< of the panorama's size; must outlive the detector
   double height = 1.0;  ///< metres, viewpoint above the ground
   Search search;
 };
 
+/// See make_detector.
 enum class DetectorMode { paper, bole };
+/// By the name that boled.toml gives it; nullopt for any other.
 std::optional<DetectorMode> detector_mode_from_name(std::string_view name);
 
 /// Finds trunks in one panorama after the other. Not for use by two threads at once.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/angles.h"
+
 namespace bole {
 namespace {
 
@@ -22,7 +24,7 @@ double normal(double x, double sigma) { return std::exp(-0.5 * (x / sigma) * (x 
 // Logarithm of the probability that a tilt lies within half a step of this one, where there is any.
 double log_prior(const GroundTilt& tilt, double sigma) {
   const double square = tilt.forward * tilt.forward + tilt.left * tilt.left;
-  return std::log(kStep * kStep / (2 * M_PI * sigma * sigma)) - 0.5 * square / (sigma * sigma);
+  return std::log(kStep * kStep / (2 * kPi * sigma * sigma)) - 0.5 * square / (sigma * sigma);
 }
 
 }  // namespace
@@ -34,7 +36,7 @@ double GroundTilt::raise(double bearing) const {
 double GroundTilt::lean(double bearing) const { return lean(std::cos(bearing), std::sin(bearing)); }
 
 TiltEstimator::TiltEstimator(double height) : feet_(kWidths) {
-  ready_.reserve(256);
+  ready_.reserve(kMostWitnesses);
   for (int row = -kReach, i = 0; row <= kReach; ++row) {
     for (int column = -kReach; column <= kReach; ++column)
       tilts_[i++] = {.forward = kStep * column, .left = kStep * row};

@@ -46,6 +46,8 @@ struct TiltWitness {
 /// tells how well.
 class TiltEstimator {
  public:
+  static constexpr std::size_t kMostWitnesses = 256;  ///< that are weighed without allocating
+
   explicit TiltEstimator(double height);
 
   GroundTilt estimate(std::span<const TiltWitness> witnesses);

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "detect/log_odds.h"
+
 namespace bole {
 namespace {
 
 constexpr float kWitness = 0.3F;  // probability of a trunk that tells of the ground's tilt
 
 }  // namespace
-
-float probability(double logit) { return static_cast<float>(1 / (1 + std::exp(-logit))); }
 
 TrunkSight sight_of(const Trunk& trunk, const PanoramaGeometry& panorama) {
   const double focal = panorama.focal();

@@ -8,9 +8,6 @@
 
 namespace bole {
 
-/// A logit as a probability.
-float probability(double logit);
-
 /// What a trunk of that panorama says of where it stands: tangents and radians.
 TrunkSight sight_of(const Trunk& trunk, const PanoramaGeometry& panorama);
 

@@ -36,8 +36,7 @@ using V32 = hn::Vec<D32>;
 
 // Each lane of a and b is a pair of 16-bit numbers below 2^15: a.low b.low + a.high b.high.
 HWY_INLINE V32 multiply_add_pairs(D32 d, V32 a, V32 b) {
-#if HWY_TARGET == HWY_SSSE3 || HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_AVX2 || \
-    HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+#if HWY_TARGET <= HWY_SSSE3
   const hn::RebindToSigned<D32> di32;
   const hn::RepartitionToNarrow<decltype(di32)> di16;
   auto none = hn::Zero(di32);  // one instruction there, nothing goes to the second sum
@@ -156,7 +155,7 @@ void warp_tiles(const WarpStrip& strip, std::size_t lead) {
   const WarpEntry* const entries = strip.table.entries().data() + first * kTilePixels;
   const auto* const bytes = reinterpret_cast<const std::uint8_t*>(strip.image.bytes.data());
   for (int t = 0; t < count; ++t) {
-#if HWY_TARGET == HWY_AVX3_DL
+#if HWY_TARGET <= HWY_AVX3_DL
     if constexpr (Layout::kPixelBytes <= 2) {
       const std::size_t number = first + static_cast<std::size_t>(t);
       if (!strip.windows.empty() && strip.windows.tile(number).fits) {
@@ -192,7 +191,7 @@ void warp_strip(const WarpStrip& strip) {
 
 #endif  // HWY_TARGET
 
-bool uses_windows() { return HWY_TARGET == HWY_AVX3_DL; }
+bool uses_windows() { return HWY_TARGET <= HWY_AVX3_DL; }
 
 }  // namespace
 }  // namespace bole::HWY_NAMESPACE

@@ -59,6 +59,10 @@ class WarpTable {
   /// As load, from the file's bytes.
   static WarpTable parse(std::vector<std::byte> bytes, const std::string& file,
                          std::uint32_t digest);
+  // What a copy would show is the first one's bytes.
+  WarpTable(WarpTable&&) = default;
+  WarpTable& operator=(WarpTable&&) = default;
+
   /// Replaces the file at `path` by this table, in one step.
   void store(const std::filesystem::path& path) const;
 

@@ -2,7 +2,7 @@
 // The kernel for processors that look up 64 bytes in 128 of them in one instruction (AVX-512 VBMI),
 // which Highway does not offer by a name of its own.
 
-#if HWY_TARGET == HWY_AVX3_DL
+#if HWY_TARGET <= HWY_AVX3_DL
 
 HWY_BEFORE_NAMESPACE();
 namespace bole::HWY_NAMESPACE {

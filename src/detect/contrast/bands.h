@@ -26,8 +26,10 @@ class Bands {
       8;  ///< grey levels added before the logarithm: noise counts less
   /// Of log brightness: what differs less is shown to the networks as no stronger than that.
   static constexpr float kLeastSpread = 0.06F;
+  static constexpr int kMostLog = 894;  ///< kScale log((255 + kBlackLevel) / kBlackLevel)
   static constexpr int kMostColumns = 73;
   static constexpr int kMostFlank = 36;
+  static_assert(kMostColumns * kMostLog < 1 << 16 && kMostFlank * kMostLog < 1 << 15);
   static constexpr int kCoarse = 32;  ///< columns between the whole sums
   static constexpr int kSpare = 128;  ///< sums that may be read beyond the last band's
 

@@ -193,11 +193,9 @@ FoundEdge find_edge(const EdgeBands& bands, const EdgeSearch& search) {
 
 FoundEdge find_edge_plain(const EdgeBands& bands, const EdgeSearch& search) {
   const auto response = [&](int band, int i) {
-    const std::uint16_t* at = bands.sums + band * bands.pitch + search.first_column + i;
-    const auto bend = static_cast<std::int16_t>(at[bands.flank] - 2 * at[0] + at[-bands.flank]);
-    const int most = search.limit * bands.flank;
+    const int bend = bands.bend(band, search.first_column + i), most = search.limit * bands.flank;
     const int value =
-        times_fixed_point15(std::clamp<int>(bend, -most, most), share_of_flank(bands, search));
+        times_fixed_point15(std::clamp(bend, -most, most), share_of_flank(bands, search));
     return band < bands.horizon ? std::max(value, times_fixed_point15(value, kWrongSign)) : value;
   };
   float highest = -1e9F;

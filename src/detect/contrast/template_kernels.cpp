@@ -53,7 +53,7 @@ void EdgeResponsesAbove(const std::uint16_t* sum, int flank, std::int16_t factor
   edge_responses_above_plain(sum, flank, factor, count, out);
 }
 
-void SumColumns(const ColumnSums& sums) { sum_columns_plain(sums); }
+void SumEvidence(const EvidenceSums& sums) { sum_evidence_plain(sums); }
 
 #else
 
@@ -167,7 +167,7 @@ HWY_INLINE ByteValues Joined(ByteValues l, ByteValues r) {
 // Of falling brightness instead of rising.
 HWY_INLINE ByteValues Turned(ByteValues response) { return hn::Sub(hn::Zero(Bytes()), response); }
 
-void SumColumns(const ColumnSums& s) {
+void SumEvidence(const EvidenceSums& s) {
   const Bytes d;
   const auto zero = hn::Zero(Sums());
   const Run none{zero, zero, zero};
@@ -240,7 +240,7 @@ namespace bole {
 HWY_EXPORT(ThinSums);
 HWY_EXPORT(EdgeResponses);
 HWY_EXPORT(EdgeResponsesAbove);
-HWY_EXPORT(SumColumns);
+HWY_EXPORT(SumEvidence);
 HWY_EXPORT(FindPeaks);
 
 void thin_sums(const std::uint16_t* sum, int step, int count, std::uint16_t* out) {
@@ -257,7 +257,7 @@ void edge_responses_above(const std::uint16_t* sum, int flank, std::int16_t fact
   HWY_DYNAMIC_DISPATCH(EdgeResponsesAbove)(sum, flank, factor, count, out);
 }
 
-void sum_columns(const ColumnSums& sums) { HWY_DYNAMIC_DISPATCH(SumColumns)(sums); }
+void sum_evidence(const EvidenceSums& sums) { HWY_DYNAMIC_DISPATCH(SumEvidence)(sums); }
 
 void thin_sums_plain(const std::uint16_t* sum, int step, int count, std::uint16_t* out) {
   for (int i = 0; i < count; ++i) out[i] = sum[i * step];
@@ -293,7 +293,7 @@ void edge_responses_above_plain(const std::uint16_t* sum, int flank, std::int16_
   }
 }
 
-void sum_columns_plain(const ColumnSums& s) {
+void sum_evidence_plain(const EvidenceSums& s) {
   const auto joined = [](int l, int r) { return (((l + r + 1) >> 1) + std::min(l, r) + 1) >> 1; };
   const auto turned = [](int response) { return 2 * kNoResponse - response; };
   for (int i = 0; i < s.count; ++i) {

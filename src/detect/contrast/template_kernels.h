@@ -39,7 +39,7 @@ void edge_responses_above_plain(const std::uint16_t* sum, int flank, std::int16_
                                 const ResponsesAbove& out);
 
 /// What is summed down the columns, and where the results go.
-struct ColumnSums {
+struct EvidenceSums {
   /// Bands x pitch; a trunk's right edge lies `across` elements after its left one. Above the
   /// horizon ResponsesAbove.
   const std::uint8_t* responses = nullptr;
@@ -56,8 +56,8 @@ struct ColumnSums {
 /// joined(l, r) - 30 over the bands, started anew at 0 wherever it falls below, where joined(l, r)
 /// is (l + r) / 4 + min(l, r) / 2, its halves rounded up. Above the horizon the higher one of what
 /// either response of ResponsesAbove gives less 24.
-void sum_columns(const ColumnSums& sums);
-void sum_columns_plain(const ColumnSums& sums);
+void sum_evidence(const EvidenceSums& sums);
+void sum_evidence_plain(const EvidenceSums& sums);
 
 /// Writes the places i < count, ascending, where evidence[i] is at least `least`, not below that of
 /// the `reach` places before it and above that of the `reach` places after it; returns how many.

@@ -26,7 +26,9 @@ constexpr double kPlaceCounts = 0.27;   // power of its likelihood
 constexpr double kUsualShare = 0.53;    // of the searched range, where most trees are found
 constexpr double kRangeSpread = 1.31;   // standard deviation about that, of the range's logarithm
 constexpr double kLeastTangent = 0.03;  // of a foot: nearer the horizon all are as far away
-constexpr double kLikely = 0.15;        // logarithm: from so much below 0 on a place counts
+// Found are some hundreds; the widest, which come last, go first where noise gives more.
+constexpr std::size_t kMostFound = 20000;
+constexpr double kLikely = 0.15;  // logarithm: from so much below 0 on a place counts
 
 // To the nearest whole number; columns stay far from the limits.
 int rounded(double x) { return static_cast<int>(x + (kFar + 0.5)) - static_cast<int>(kFar); }
@@ -105,7 +107,7 @@ Templates::Templates(const DetectorSetup& setup, const Bands& bands, int most_ca
   }
   thinned_.resize(static_cast<std::size_t>(bands_) * thinned_pitch(2));
   places_.resize(width_);
-  found_.reserve(20000);
+  found_.reserve(kMostFound);
   kept_.reserve(most_);
   earlier_in_part_.reserve(most_);
 }
@@ -210,19 +212,19 @@ void Templates::respond(const Bands& bands, const Flank& flank) {
 void Templates::accumulate(int size_index) {
   const Size& size = sizes_[size_index];
   const Flank& flank = flanks_[size.flank];
-  ColumnSums sums{.responses = responses_.data(),
-                  .either_sign = {rising_.data(), falling_.data()},
-                  .pitch = flank.pitch,
-                  .across = size.width / flank.step,
-                  .horizon = horizon_band_,
-                  .first_foot = size.first_foot,
-                  .last_foot = size.last_foot,
-                  .count = width_ / flank.step};
+  EvidenceSums sums{.responses = responses_.data(),
+                    .either_sign = {rising_.data(), falling_.data()},
+                    .pitch = flank.pitch,
+                    .across = size.width / flank.step,
+                    .horizon = horizon_band_,
+                    .first_foot = size.first_foot,
+                    .last_foot = size.last_foot,
+                    .count = width_ / flank.step};
   for (const int polarity : {0, 1}) {
     sums.evidence[polarity] = peaks_[polarity][size_index].evidence.data() + pad_;
     sums.foot[polarity] = peaks_[polarity][size_index].foot.data();
   }
-  sum_columns(sums);
+  sum_evidence(sums);
   for (const int polarity : {0, 1}) pad(sums.evidence[polarity], sums.count);
 }
 
@@ -263,7 +265,7 @@ void Templates::collect(int size_index, int polarity) {
   for (const int i : std::span(places_).first(count)) {
     const int evidence = at[i];
     if (narrower.beats(i * step, evidence) || wider.beats(i * step, evidence)) continue;
-    if (found_.size() == found_.capacity()) return;
+    if (found_.size() == kMostFound) return;
     found_.push_back({static_cast<float>(i * step), static_cast<float>(size.width),
                       static_cast<float>(peaks.foot[i] * Bands::kRows), polarity == 0,
                       static_cast<float>(evidence * size.rank_factors[peaks.foot[i] - 1])});

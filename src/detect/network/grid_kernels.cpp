@@ -77,7 +77,7 @@ HWY_INLINE void FindColumns(const CellColumns& columns, GridBuffers& buffers) {
 }
 
 // 64 sums can be looked up at once, which Highway does not offer.
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+#if HWY_TARGET <= HWY_AVX3
 
 // The sums at each column and the next, out of the 32 kRegisters from the first border's column on.
 template <int kRegisters>

@@ -33,9 +33,8 @@ std::span<const Tree> PaperDetector::find(const PanoramaView& panorama,
     append_minima(scores_.scores(k), kThreshold, setup_.panorama.wraps(), static_cast<int>(k),
                   candidates_);
   }
-  std::erase_if(candidates_, [&](const PaperCandidate& c) {
-    return !setup_.seen.columns.empty() && setup_.seen.columns[c.column].empty();
-  });
+  std::erase_if(candidates_,
+                [&](const PaperCandidate& c) { return setup_.seen.columns[c.column].empty(); });
   suppress(scores_.templates(), setup_.panorama.wraps() ? setup_.panorama.width : 0, candidates_);
 
   trees_.clear();

@@ -27,6 +27,18 @@ void keep_best(std::vector<PaperCandidate>& candidates, const Rivals& rivals) {
   candidates.erase(kept_end, candidates.end());
 }
 
+// Whether the scores rise after column j, and after those that equal it.
+bool rises_after(std::span<const float> scores, int j, bool wraps) {
+  const int width = static_cast<int>(scores.size());
+  for (int i = 1; i < width; ++i) {
+    const int next = j + i;
+    if (next >= width && !wraps) return true;
+    const float score = scores[next % width];
+    if (score != scores[j]) return score > scores[j];
+  }
+  return true;
+}
+
 }  // namespace
 
 void append_minima(std::span<const float> scores, float threshold, bool wraps, int index,
@@ -38,9 +50,8 @@ void append_minima(std::span<const float> scores, float threshold, bool wraps, i
     for (int j = block; j < end; ++j) {
       if (!(scores[j] < threshold)) continue;
       const int left = j > 0 ? j - 1 : wraps ? width - 1 : 0;
-      const int right = j + 1 < width ? j + 1 : wraps ? 0 : j;
       const bool below_left = scores[j] < scores[left] || left == j;
-      if (below_left && scores[j] <= scores[right]) candidates.push_back({j, index, scores[j]});
+      if (below_left && rises_after(scores, j, wraps)) candidates.push_back({j, index, scores[j]});
     }
   }
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "detect/log_odds.h"
+
 namespace bole {
 namespace {
 
@@ -10,18 +12,12 @@ constexpr double kShift = -2.86, kNow = 0.29, kBest = 0.90, kSteady = 3.56, kKno
 
 }  // namespace
 
-double log_odds(double probability) {
-  constexpr double kCertain = 1e-4;
-  probability = std::clamp(probability, kCertain, 1 - kCertain);
-  return std::log(probability / (1 - probability));
-}
-
 float TrackScore::update(float score, double seen, double range_share) {
   const double now = log_odds(score);
   best_ = std::max(best_, now);
   const double odds = kShift + kNow * now + kBest * best_ + kSteady * std::log(seen) -
                       kKnown * std::log(range_share);
-  return static_cast<float>(1 / (1 + std::exp(-odds)));
+  return probability(odds);
 }
 
 }  // namespace bole

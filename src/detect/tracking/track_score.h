@@ -4,9 +4,6 @@
 
 namespace bole {
 
-/// log(p / (1 - p)) of a probability p, which is never taken for quite 0 or 1.
-double log_odds(double probability);
-
 /// The probability that there is a tree, given all that has been seen of it.
 ///
 /// The detector's log odds of one tree waver with what it stands before and with the light, and so

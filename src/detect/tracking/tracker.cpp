@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "detect/tracking/track_score.h"
+#include "detect/log_odds.h"
 #include "geometry/angles.h"
 #include "geometry/ground.h"
 
@@ -17,16 +17,17 @@ constexpr int kFewSightings = 3;  // too few to expect it
 constexpr double kHardly = 0.1;   // probability of what is not worth expecting
 constexpr double kProbable = 0.5;
 constexpr std::size_t kMostTracks = 256;
-constexpr double kGate = 30.0;        // misfit at which a sighting is no more of a track
-constexpr double kAsideGate = 12.0;   // the part of that across the line of sight
-constexpr double kWidthSpread = 0.2;  // of log angular width between two sightings of one tree
-constexpr double kPartlySeen = 8.0;   // most that a wrong width costs: half a trunk may be lit
-constexpr double kPartOfWidth = 0.3;  // that its middle is off by then
-constexpr double kScoreSpread = 3.0;  // of a score's log odds between two sightings of one tree
-constexpr double kUnlike = 6.0;       // most that an unlikely score costs
-constexpr double kJustSeen = 0.3;     // seconds
-constexpr double kSamePlace = 0.3;    // of a tree's width
-constexpr double kSameWidth = 0.75;   // in kWidthSpread
+constexpr double kGate = 30.0;         // misfit at which a sighting is no more of a track
+constexpr double kAsideGate = 12.0;    // the part of that across the line of sight
+constexpr double kWidthSpread = 0.2;   // of log angular width between two sightings of one tree
+constexpr double kPartlySeen = 8.0;    // most that a wrong width costs: half a trunk may be lit
+constexpr double kPartOfWidth = 0.3;   // that its middle is off by then
+constexpr double kScoreSpread = 3.0;   // of a score's log odds between two sightings of one tree
+constexpr double kSureEnough = 0.001;  // off 0 or 1: what is surer is as sure
+constexpr double kUnlike = 6.0;        // most that an unlikely score costs
+constexpr double kJustSeen = 0.3;      // seconds
+constexpr double kSamePlace = 0.3;     // of a tree's width
+constexpr double kSameWidth = 0.75;    // in kWidthSpread
 constexpr double kFartherIfSame = 1.6;
 constexpr double kBeyondEdge = 0.15;   // of a tree's width, that a part of it may stand out
 constexpr double kNearer = 0.6;        // metres that a part of a tree may seem nearer
@@ -37,11 +38,6 @@ constexpr double kScaleSigma = 0.05;   // of the scale as it is
 constexpr double kLeastError = 0.03;   // of a range seen, as a share of it
 
 double squared(double x) { return x * x; }
-
-// What is surer than this is as sure as it.
-double bounded_log_odds(double probability) {
-  return log_odds(std::clamp(probability, 0.001, 0.999));
-}
 
 // After longer nothing says how the robot moved.
 bool follows(double elapsed) {
@@ -154,7 +150,8 @@ double Tracker::cost_of(const Tree& tree, const Track& track, const Place& place
   const double misfit = aside + squared(step) / along + shape;
   if (aside > kAsideGate || misfit > kGate) return Assignment::kForbidden;
   const double doubt =
-      (bounded_log_odds(tree.score) - bounded_log_odds(track.probability())) / kScoreSpread;
+      (log_odds(tree.score, kSureEnough) - log_odds(track.probability(), kSureEnough)) /
+      kScoreSpread;
   return misfit + track.unseen() + std::min(squared(doubt), kUnlike);
 }
 

@@ -125,7 +125,7 @@ TEST_P(Kernels, FindPeaksAsThePlainLoops) {
   }
 }
 
-TEST_P(Kernels, SumColumnsAsThePlainLoops) {
+TEST_P(Kernels, SumEvidenceAsThePlainLoops) {
   simulate::Random random(2);
   constexpr int kBands = 97, kCount = 333, kPitch = 600;
   std::vector<std::uint8_t> responses[3];
@@ -139,20 +139,20 @@ TEST_P(Kernels, SumColumnsAsThePlainLoops) {
   }
   std::vector<std::int16_t> results[8];
   for (auto& result : results) result.assign(kCount + kTemplateChunk, -1);
-  ColumnSums sums{.responses = responses[0].data(),
-                  .either_sign = {responses[1].data(), responses[2].data()},
-                  .pitch = kPitch,
-                  .across = 17,
-                  .horizon = 29,
-                  .first_foot = 20,
-                  .last_foot = 80,
-                  .count = kCount};
+  EvidenceSums sums{.responses = responses[0].data(),
+                    .either_sign = {responses[1].data(), responses[2].data()},
+                    .pitch = kPitch,
+                    .across = 17,
+                    .horizon = 29,
+                    .first_foot = 20,
+                    .last_foot = 80,
+                    .count = kCount};
   for (const int plain : {0, 1}) {
     for (const int polarity : {0, 1}) {
       sums.evidence[polarity] = results[4 * plain + 2 * polarity].data();
       sums.foot[polarity] = results[4 * plain + 2 * polarity + 1].data();
     }
-    plain ? sum_columns_plain(sums) : sum_columns(sums);
+    plain ? sum_evidence_plain(sums) : sum_evidence(sums);
   }
   for (int k = 0; k < 4; ++k)
     for (int i = 0; i < kCount; ++i)

@@ -27,6 +27,11 @@ TEST(PaperMinima, OfAPlateauAreItsFirstColumn) {
   EXPECT_THAT(minima_of({0, -5, -6, -6, -6, -5, 0}, true), ElementsAre(2));
 }
 
+TEST(PaperMinima, AShelfOnASlopeIsNone) {
+  EXPECT_THAT(minima_of({0, -5, -6, -6, -7, 0}, true), ElementsAre(4));
+  EXPECT_THAT(minima_of({0, -7, -6, -6, -5, 0}, true), ElementsAre(1));
+}
+
 TEST(PaperMinima, NeedNoThresholdCrossingBetweenThem) {
   EXPECT_THAT(minima_of({-5, -9, -6, -8, -7, -4.5F}, true), ElementsAre(1, 3));
 }

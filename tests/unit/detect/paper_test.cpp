@@ -137,9 +137,16 @@ cv::Mat1b one_trunk(const PanoramaGeometry& panorama, double bearing, double foo
   return image;
 }
 
+// Every row, in each column.
+std::vector<SeenRows> all_seen(const PanoramaGeometry& panorama) {
+  return {static_cast<std::size_t>(panorama.width), {0, static_cast<std::uint16_t>(panorama.rows)}};
+}
+
 TEST(PaperDetector, FindsATrunkAlsoAcrossTheSeam) {
   const PanoramaGeometry panorama = full_panorama(1440, radians(27), 0.9, kHeight);
-  PaperDetector detector({.panorama = panorama, .seen = {}, .height = kHeight, .search = {}});
+  const std::vector<SeenRows> seen = all_seen(panorama);
+  PaperDetector detector(
+      {.panorama = panorama, .seen = {{}, seen}, .height = kHeight, .search = {}});
   for (const double bearing : {0.7, -kPi + 0.01}) {
     const cv::Mat1b image = one_trunk(panorama, bearing, 3, 0.15);
     const std::span<const Tree> trees = detector.detect(view_of(image, panorama));
@@ -156,7 +163,7 @@ TEST(PaperDetector, FindsATrunkAlsoAcrossTheSeam) {
 TEST(PaperDetector, FindsNothingInAColumnThatIsNotSeen) {
   const PanoramaGeometry panorama = full_panorama(1440, radians(27), 0.9, kHeight);
   const cv::Mat1b image = one_trunk(panorama, 0.7, 3, 0.15);
-  std::vector<SeenRows> seen(1440, {0, static_cast<std::uint16_t>(panorama.rows)});
+  std::vector<SeenRows> seen = all_seen(panorama);
   const int centre = static_cast<int>(panorama.column_of_bearing(0.7));
   for (int x = -60; x <= 60; ++x) seen[centre + x] = {};
   PaperDetector detector(

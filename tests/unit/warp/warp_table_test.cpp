@@ -141,6 +141,9 @@ TEST(WarpTable, TheHorizonRowOfAPhotographIsThePanoramasHorizon) {
               50 + off * focal_px / table.panorama().focal(), 0.05);
 }
 
+// It would point into the table that it was copied from.
+static_assert(!std::is_copy_constructible_v<WarpTable>);
+
 TEST(WarpTable, StoredAndLoadedIsTheSame) {
   const test::TemporaryFolder folder;
   const Camera camera = load_camera(write_small_camera(folder));
