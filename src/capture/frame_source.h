@@ -65,7 +65,8 @@ class FrameSource {
   virtual void interrupt() noexcept = 0;
   /// Time from a frame to the next as negotiated; 0 while it is not known.
   virtual std::chrono::nanoseconds frame_period() const = 0;
-  /// One line for logs and the status: device, format, size, rate as negotiated.
+  /// One line for logs and the status, which may cut its end: format, size, rate as negotiated,
+  /// then the device.
   virtual std::string description() const = 0;
   /// What was asked for at the last open() and the camera would not do, a line each.
   virtual std::vector<std::string> refused() const { return {}; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <tuple>
 
 namespace bole {
@@ -42,6 +43,14 @@ void cut(std::string& text, std::size_t most) {
   if (text.size() <= most) return;
   while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0) == 0x80) --most;
   text.resize(most);
+}
+
+// A number that is cut must not read as a whole one.
+void shorten(std::string& text) {
+  if (text.size() <= kMostStatusTextBytes) return;
+  constexpr std::string_view kMore = "...";
+  cut(text, kMostStatusTextBytes - kMore.size());
+  text += kMore;
 }
 
 void make_finite(float& value) {
@@ -92,18 +101,18 @@ std::span<const std::byte> TreeListEncoder::encode(const TreeList& list) {
 void encode_status(status_t status, std::vector<std::byte>& bytes) {
   for (std::string* text : {&status.version, &status.camera, &status.source, &status.state_reason,
                             &status.degraded_reason, &status.last_error}) {
-    cut(*text, kMostStatusTextBytes);
+    shorten(*text);
   }
   for (float* value : {&status.frame_rate, &status.list_rate, &status.latency_p50_ms,
                        &status.latency_p99_ms, &status.latency_max_ms}) {
     make_finite(*value);
   }
   for (std::vector<counter_t>* counters : {&status.drops, &status.camera_events}) {
-    for (counter_t& counter : *counters) cut(counter.name, kMostStatusTextBytes);
+    for (counter_t& counter : *counters) shorten(counter.name);
   }
   for (bus_t& bus : status.buses) {
-    cut(bus.name, kMostStatusTextBytes);
-    cut(bus.last_error, kMostStatusTextBytes);
+    shorten(bus.name);
+    shorten(bus.last_error);
     make_finite(bus.handover_p50_us);
     make_finite(bus.handover_p99_us);
     make_finite(bus.handover_max_us);

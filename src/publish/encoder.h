@@ -16,7 +16,7 @@ constexpr std::size_t kDatagramBytes = 1400;
 /// LCM's short header (magic and sequence number) and the channel's name with its closing zero.
 constexpr std::size_t kLcmOverheadBytes = 8 + sizeof("BOLE_TREES");
 constexpr std::size_t kMostListBytes = kDatagramBytes - kLcmOverheadBytes;
-/// No text of a status is longer; what is longer is cut.
+/// No text of a status is longer; what is longer is cut and ends in "...".
 constexpr std::size_t kMostStatusTextBytes = 80;
 
 /// The one encoder of tree lists: what it writes goes to every bus as it is. Trees are ordered

@@ -14,6 +14,7 @@ using namespace test;
 using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 TEST(ZenohSession, RefusesMalformedEndpoints) {
   for (const auto& [endpoint, why] : std::vector<std::pair<std::string, std::string>>{
@@ -45,6 +46,13 @@ TEST(ZenohSession, WaitsForAPortInUseAndSaysSo) {
   taken.reset();
   EXPECT_TRUE(eventually([&] { return session.state().open; }));
   EXPECT_EQ(session.state().error, "");
+}
+
+TEST(ZenohSession, TellsFirstWhyItCannotListenAtAnAddressThatIsNotOurs) {
+  const ZenohSession session(listening("tcp/192.0.2.77:17559"));  // TEST-NET-1
+  EXPECT_TRUE(eventually([&] { return !session.state().error.empty(); }));
+  EXPECT_THAT(session.state().error,
+              AllOf(StartsWith("Cannot assign requested address"), HasSubstr("192.0.2.77:17559")));
 }
 
 TEST(ZenohSettings, AreCheckedWithoutAPort) {

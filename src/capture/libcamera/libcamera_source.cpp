@@ -80,9 +80,9 @@ Agreed configure(libcamera::Camera& camera, const CameraSettings& settings) {
         std::max(stride, packed_row_bytes(format.ours, settings.size.width)));
     return agreed;
   }
-  throw CaptureError("gives no " + shown(settings.size) + " frames" +
-                     (settings.format ? " as " + std::string(name(*settings.format)) : "") +
-                     ", which the calibration is for; it offers " + stream.toString());
+  throw CaptureError(
+      "offers " + stream.toString() + ", the calibration is for " + shown(settings.size) +
+      (settings.format ? ", source.format is " + std::string(name(*settings.format)) : ""));
 }
 
 class LibcameraSource final : public FrameSource {
@@ -184,8 +184,8 @@ void LibcameraSource::start() {
   step(interrupted_);
   session_ =
       std::make_shared<LibcameraSession>(acquired.take(), stream.stream(), agreed.layout, controls);
-  description_ = id_ + " (" + libcamera_version() + "), " + stream.toString() + ", " +
-                 std::to_string(session_->count()) + " buffers";
+  description_ = stream.toString() + ", " + std::to_string(session_->count()) + " buffers, " + id_ +
+                 in_brackets(libcamera_version());
 }
 
 // Sets the exposure that the last brightness told of calls for, once it is known how long a frame

@@ -106,7 +106,7 @@ std::optional<V4l2Format> try_format(const V4l2Device& device, v4l2_buf_type typ
   const int error = device.ask(VIDIOC_S_FMT, &driver);
   if (error == EBUSY) throw CaptureError("is in use by another program");
   if (error != 0) {
-    offered = fourcc_text(fourcc) + " is refused: " + error_text(error);
+    offered = "refuses " + fourcc_text(fourcc) + ": " + error_text(error);
     return std::nullopt;
   }
   V4l2Format format = granted(driver);
@@ -114,7 +114,7 @@ std::optional<V4l2Format> try_format(const V4l2Device& device, v4l2_buf_type typ
   const bool whole_frames =
       field == V4L2_FIELD_NONE || field == V4L2_FIELD_ANY || field == V4L2_FIELD_INTERLACED;
   if (format.fourcc != fourcc || format.layout.size != settings.size || !whole_frames) {
-    offered = "it offers " + fourcc_text(format.fourcc) + " " + shown(format.layout.size) +
+    offered = "offers " + fourcc_text(format.fourcc) + " " + shown(format.layout.size) +
               (whole_frames ? "" : " in single fields");
     return std::nullopt;
   }
@@ -183,8 +183,7 @@ V4l2Format negotiate_format(const V4l2Device& device, const CameraSettings& sett
     if (last && reaches(*last, settings.frame_rate)) return *last;
   }
   if (!best) {
-    throw CaptureError("gives no " + shown(settings.size) +
-                       " frames, which the calibration is for; " + offered);
+    throw CaptureError(offered + ", the calibration is for " + shown(settings.size));
   }
   best = try_format(device, type, best->fourcc, settings, offered);
   if (!best) throw CaptureError("does not keep to the format it has given");

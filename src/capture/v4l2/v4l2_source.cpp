@@ -82,7 +82,6 @@ void V4l2Source::start() {
 }
 
 void V4l2Source::describe(const v4l2_capability& capability) {
-  const auto text = [](const auto& bytes) { return reinterpret_cast<const char*>(bytes); };
   std::string rate = "an unknown rate";
   if (format_.period.count() > 0) {
     const auto millihertz = std::llround(1e12 / static_cast<double>(format_.period.count()));
@@ -90,9 +89,9 @@ void V4l2Source::describe(const v4l2_capability& capability) {
     rate = std::to_string(millihertz / 1000) + (millihertz % 1000 == 0 ? "" : "." + thousandths) +
            " Hz";
   }
-  description_ = name_ + " (" + text(capability.card) + ", " + text(capability.driver) + "), " +
-                 fourcc_text(format_.fourcc) + " " + shown(format_.layout.size) + " at " + rate +
-                 ", " + std::to_string(buffers_->count()) + " buffers";
+  description_ = fourcc_text(format_.fourcc) + " " + shown(format_.layout.size) + " at " + rate +
+                 ", " + std::to_string(buffers_->count()) + " buffers, " +
+                 reinterpret_cast<const char*>(capability.card) + in_brackets(name_);
 }
 
 // What poll() tells of the camera; POLLNVAL stands for an interruption, 0 for a timeout.

@@ -34,10 +34,10 @@ def comes_back_different(other_mode, usable):
                     listener.wait_for_new_list(20)
                 else:
                     listener.wait_for_status(
-                        lambda status: "no 640 x 480 frames" in status["state_reason"], 20,
+                        lambda status: "calibration is for 640 x 480" in status["state_reason"], 20,
                         "a reason that names the size", mark)
-                    boled.wait_for_log("no 640 x 480 frames", 10)
-                    expect(len(boled.log_lines("no 640 x 480 frames")), 1, "log lines about it")
+                    boled.wait_for_log("calibration is for 640 x 480", 10)
+                    expect(len(boled.log_lines("calibration is for 640 x 480")), 1, "log lines about it")
             with Camera([first_mode]) as camera:
                 camera.plug()
                 listener.wait_for_new_list(20)

@@ -91,6 +91,16 @@ pub fn without_places(text: &str) -> String {
     words.join(" ").replace(" ]", "]")
 }
 
+/// The system's reason, which zenoh puts last and in brackets, ahead of the address: a status has
+/// room for 80 bytes.
+pub fn reason_first(text: &str) -> String {
+    let innermost = text.strip_suffix(']').and_then(|layers| layers.rsplit_once(": ["));
+    match innermost.and_then(|(_, cause)| cause.split_once(": ")) {
+        Some((address, reason)) => format!("{reason}: {address}"),
+        None => text.to_owned(),
+    }
+}
+
 struct Text(String);
 
 impl Visit for Text {

@@ -236,7 +236,10 @@ impl Shared {
                     *opening = Opening::Done(open);
                     return;
                 }
-                Err(e) => *opening = Opening::Failed(log::without_places(&e.to_string())),
+                Err(e) => {
+                    let text = log::without_places(&e.to_string());
+                    *opening = Opening::Failed(log::reason_first(&text));
+                }
             }
             let waited = self
                 .ended
