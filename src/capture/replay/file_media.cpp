@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <map>
 
@@ -43,6 +44,12 @@ void stamp_by_table(std::vector<FrameFile>& files, const fs::path& table) {
     }
     file.utime_us = found->second;
   }
+  const auto falls =
+      std::ranges::adjacent_find(files, std::ranges::greater(), &FrameFile::utime_us);
+  if (falls == files.end()) return;
+  throw ConfigError(table, "", std::next(falls)->name + " is earlier than " + falls->name,
+                    "times must rise in the byte order of the names; fill up their numbers with "
+                    "zeros, or mend the times");
 }
 
 class FileMedia : public ReplayMedia {

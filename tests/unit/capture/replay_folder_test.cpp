@@ -115,6 +115,7 @@ TEST(Replay, RefusesDamagedTimestamps) {
   EXPECT_THAT(refused("f0.grey,1\nf1.grey,-1\n"), HasSubstr("\"-1\" is not a time"));
   EXPECT_THAT(refused("f0.grey,1\nf1.grey,9223372036854775807\n"), HasSubstr("is not a time"));
   EXPECT_THAT(refused("f0.grey,1\nf0.grey,2\n"), HasSubstr("line 2: f0.grey has a time already"));
+  EXPECT_THAT(refused("f0.grey,2\nf1.grey,1\n"), HasSubstr("f1.grey is earlier than f0.grey"));
 }
 
 TEST(Replay, RefusesWhatHoldsNoFrameInOneLine) {
