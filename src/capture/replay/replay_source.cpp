@@ -79,7 +79,7 @@ class ReplaySource : public FrameSource {
   std::int64_t release_ns(std::int64_t utime_us, std::int64_t seq) const;
   void skip_overdue(DropCounts& drops);
   void read_ahead();
-  Grab hand_out();
+  void hand_out(Grab& grab);
 
   ReplayOptions options_;
   Clock& clock_;
@@ -164,29 +164,26 @@ void ReplaySource::read_ahead() {
   pending_ = std::move(next);
 }
 
-Grab ReplaySource::hand_out() {
-  Grab grab;
+void ReplaySource::hand_out(Grab& grab) {
   const Pending next = *std::exchange(pending_, std::nullopt);
   if (!next.slot) {
     grab.kind = Grab::Kind::bad_frame;
-    grab.drops[DropCause::unreadable] = 1;
+    ++grab.drops[DropCause::unreadable];
     grab.reason = next.error;
-    return grab;
+    return;
   }
   FrameStamp stamp{StampClock::replay, next.utime_us * 1000, next.release_ns};
   if (options_.restamp) stamp = {StampClock::monotonic, next.release_ns, next.release_ns};
   grab.kind = Grab::Kind::frame;
   grab.frame = pool_->frame(*next.slot, stamp, next.seq);
-  return grab;
 }
 
 Grab ReplaySource::grab(std::chrono::nanoseconds timeout) {
   const std::int64_t deadline_ns = clock_.mono_ns() + timeout.count();
   if (!base_ns_) base_ns_ = clock_.mono_ns();
   Grab grab;
-  DropCounts skipped;
   if (!pending_) {
-    skip_overdue(skipped);
+    skip_overdue(grab.drops);
     try {
       if (!seek() && !next_round()) {
         grab.kind = Grab::Kind::end;
@@ -205,9 +202,8 @@ Grab ReplaySource::grab(std::chrono::nanoseconds timeout) {
     interrupted_.take();
     grab.kind = Grab::Kind::interrupted;
   } else if (in_time) {
-    grab = hand_out();
+    hand_out(grab);
   }
-  grab.drops += skipped;
   return grab;
 }
 

@@ -83,6 +83,20 @@ TEST(Replay, WhoComesLateInRealtimeGetsTheNewestFrame) {
   EXPECT_EQ(source->grab(milliseconds(1)).frame.sensor_seq(), 5) << "the last one is never skipped";
 }
 
+TEST(Replay, CountsTheFramesMissedBeforeItsEnd) {
+  const TemporaryFolder folder = folder_of(6);
+  ReplayOptions options = options_for(folder.path(), ReplayPace::Kind::realtime);
+  options.end_s = 0.35;
+  ReplayClock clock;
+  const auto source = make_replay_source(options, clock);
+  source->open();
+  EXPECT_EQ(source->grab(milliseconds(1)).frame.sensor_seq(), 0);
+  clock.advance_to(9'000'000'000);
+  const Grab last = source->grab(milliseconds(1));
+  EXPECT_EQ(last.kind, Grab::Kind::end);
+  EXPECT_EQ(last.drops[DropCause::superseded], 3);
+}
+
 TEST(Replay, RateAndFastGoByTheirOwnTime) {
   const TemporaryFolder folder = folder_of(3);
   ReplayOptions options = options_for(folder.path());
