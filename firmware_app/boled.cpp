@@ -1,4 +1,3 @@
-#include "base/stop_signals.h"
 #include "daemon_options.h"
 #include "program.h"
 #include "service/daemon.h"
@@ -12,11 +11,7 @@ void add_options(CLI::App& app) {
   bole::add_text_option(app, options, "--trace", "service.trace", "FILE",
                         "Write where the time of frames goes, for chrome://tracing");
   bole::add_replay_options(app, options);
-  app.callback([options] {
-    const bole::DaemonConfig config = options->load();
-    const bole::StopSignals stop;
-    bole::run_daemon(config, BOLE_VERSION, stop.fd());
-  });
+  app.callback([options] { bole::run_daemon(options->load(), BOLE_VERSION); });
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 
 #include "base/clock.h"
 #include "base/errors.h"
+#include "base/stop_signals.h"
 #include "service/make_publishers.h"
 #include "service/make_source.h"
 #include "service/pipeline.h"
@@ -101,10 +102,13 @@ void log_summary(const Telemetry::Summary& summary, const std::vector<bus_t>& bu
 
 }  // namespace
 
-void run_daemon(const DaemonConfig& config, const std::string& version, int stop_fd) {
+void run_daemon(const DaemonConfig& config, const std::string& version) {
   const Camera camera = load_camera(config.camera.file);
-  SourceSetup setup = make_source(config, camera);
   const CachedTable cached = open_table(config.camera, camera);
+  // Nobody looks at them before the pipeline runs: not before the table, which may take long, but
+  // before the first thread, which a video's decoder may start.
+  const StopSignals stop;
+  SourceSetup setup = make_source(config, camera);
   if (config.service.realtime_priority > 0) set_realtime_priority(config.service.realtime_priority);
   // In lockstep a file holds the same bytes after every run.
   using Earlier = JsonlPublisher::Earlier;
@@ -131,7 +135,7 @@ void run_daemon(const DaemonConfig& config, const std::string& version, int stop
   const std::int64_t start_ns = clock.mono_ns();
   Pipeline pipeline(*setup.source, *setup.clock, processor, telemetry, std::move(publishers),
                     setup.lockstep, trace ? &*trace : nullptr);
-  pipeline.run(stop_fd);
+  pipeline.run(stop.fd());
   if (setup.kind == ListSource::replay) {
     log_summary(telemetry.summary(), pipeline.bus_health(),
                 static_cast<double>(clock.mono_ns() - start_ns) / 1e9);

@@ -1,5 +1,7 @@
 #include "zenoh_sessions.h"
 
+#include <sys/stat.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -173,6 +175,17 @@ TEST_F(ZenohFiles, RefusesCertificatesThatDoNotFit) {
   no_ca.ca = "";
   EXPECT_THAT(refused(no_ca), HasSubstr("zenoh.tls.ca"));
   EXPECT_THAT(refused({}), HasSubstr("zenoh.tls.certificate"));
+}
+
+TEST_F(ZenohFiles, RefusesAPipeThatNobodyMayEverWriteTo) {
+  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+  ZenohConfig config;
+  config.config_file = path("pipe");
+  EXPECT_THAT(config_problem([&] { check_zenoh(config); }),
+              AllOf(HasSubstr("zenoh.config_file"), HasSubstr("pipe is not a regular file")));
+  config = {};
+  config.tls.ca = path("pipe");
+  EXPECT_THAT(config_problem([&] { check_zenoh(config); }), HasSubstr("zenoh.tls.ca"));
 }
 
 TEST_F(ZenohFiles, TypedSettingsWinOverTheFileAndSaySo) {

@@ -24,6 +24,11 @@ std::unique_ptr<ReplayMedia> open_media(const ReplayOptions& options) {
     throw ConfigError(options.path, "", "does not exist",
                       "give an image, a folder of frames or a video");
   }
+  if (!std::filesystem::is_directory(options.path) &&
+      !std::filesystem::is_regular_file(options.path)) {  // a pipe would be waited for
+    throw ConfigError(options.path, "", "is not a regular file",
+                      "give an image, a folder of frames or a video");
+  }
   return is_video_name(options.path) && !std::filesystem::is_directory(options.path)
              ? open_video_file(options)
              : open_frame_files(options);

@@ -34,6 +34,7 @@ fn beginning(text: &str) -> String {
 pub fn build(settings: &Settings) -> Checked<(Config, Vec<String>)> {
     check_endpoints("zenoh.connect", &settings.connect)?;
     check_endpoints("zenoh.listen", &settings.listen)?;
+    check_regular(settings)?;
     check_tls(settings)?;
 
     let mut config = match settings.config_file.as_str() {
@@ -203,6 +204,21 @@ fn listen_endpoints(config: &Config) -> Vec<String> {
         _ => &endpoints,
     };
     serde_json::from_value(list.clone()).unwrap_or_default()
+}
+
+/// A pipe would be waited for, and nobody could interrupt that. What is missing is told later.
+fn check_regular(settings: &Settings) -> Checked<()> {
+    for (key, path) in [
+        ("zenoh.tls.ca", &settings.tls_ca),
+        ("zenoh.tls.certificate", &settings.tls_certificate),
+        ("zenoh.tls.private_key", &settings.tls_private_key),
+        ("zenoh.config_file", &settings.config_file),
+    ] {
+        if std::fs::metadata(path).is_ok_and(|there| !there.is_file()) {
+            return Err(problem(key, format!("{path} is not a regular file"), "name a file"));
+        }
+    }
+    Ok(())
 }
 
 fn check_tls(settings: &Settings) -> Checked<()> {
