@@ -80,6 +80,25 @@ class TemporaryFile {
   UniqueFd fd_;
 };
 
+// What `path` leads to through links. A rename would put a file in the place of a device or a pipe.
+std::filesystem::path file_to_replace(const std::filesystem::path& path) {
+  std::error_code error;  // what is not to be seen is told by mkostemp
+  const auto kind = std::filesystem::symlink_status(path, error);
+  if (!std::filesystem::exists(kind)) return path;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    throw ConfigError(path, "", "is not a regular file", "give the path of a file, or a new one");
+  }
+  return std::filesystem::is_symlink(kind) ? std::filesystem::canonical(path, error) : path;
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!error) return;
+  throw ConfigError(folder, "", "cannot be made: " + error.message(),
+                    "give a folder that may be written to");
+}
+
 }  // namespace
 
 UniqueFd::~UniqueFd() {
@@ -117,15 +136,25 @@ std::string read_text_file(const std::filesystem::path& path, std::size_t max_by
 }
 
 void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  std::error_code ignored;  // mkostemp tells the better story
-  std::filesystem::create_directories(folder, ignored);
-  TemporaryFile temporary(path);
-  write_all(temporary.fd(), bytes, path);
-  if (!temporary.rename_to(path)) {
-    throw ConfigError(path, "", "cannot be replaced: " + error_text(errno), "");
+  const std::filesystem::path target = file_to_replace(path);
+  const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : ".";
+  make_folder(folder);
+  TemporaryFile temporary(target);
+  write_all(temporary.fd(), bytes, target);
+  if (!temporary.rename_to(target)) {
+    throw ConfigError(target, "", "cannot be replaced: " + error_text(errno), "");
   }
   sync_folder(folder);
+}
+
+void check_replaceable(const std::filesystem::path& path) {
+  const std::filesystem::path target = std::filesystem::absolute(file_to_replace(path));
+  std::filesystem::path folder = target.parent_path();
+  std::error_code error;
+  while (!std::filesystem::exists(folder, error) && folder.has_relative_path()) {
+    folder = folder.parent_path();
+  }
+  const TemporaryFile probe(folder / target.filename());
 }
 
 }  // namespace bole

@@ -43,7 +43,11 @@ void read_file(const std::filesystem::path& path, std::size_t max_bytes,
 std::string read_text_file(const std::filesystem::path& path, std::size_t max_bytes);
 
 /// Replaces `path` by `bytes` in one step: whoever reads it sees the old file or the whole new one,
-/// also after a power cut. Missing folders are made. Throws ConfigError when it cannot.
+/// also after a power cut. Missing folders are made; links are followed. Throws ConfigError when it
+/// cannot, and when what is there is no regular file.
 void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
+/// Throws ConfigError where write_file_atomically could not begin. Leaves nothing behind.
+void check_replaceable(const std::filesystem::path& path);
 
 }  // namespace bole
