@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "base/errors.h"
+#include "base/files.h"
 #include "capture/frame_source.h"
 #include "capture/libcamera/libcamera.h"
 #include "capture/v4l2/device.h"
@@ -46,13 +47,16 @@ std::string table_detail(const DaemonConfig::CameraPart& part, const Camera& cam
     WarpTable::load(part.table, camera.digest);
     return part.table.string() + " fits the camera";
   }
+  build_warp_table(camera);  // as boled does where it keeps none; refuses what cannot be built
   const auto folder =
       part.cache_directory.empty() ? default_cache_directory() : part.cache_directory;
-  auto nearest = folder.empty() ? folder : std::filesystem::absolute(folder);
-  while (!nearest.empty() && !std::filesystem::exists(nearest)) nearest = nearest.parent_path();
-  if (nearest.empty() || ::access(nearest.c_str(), W_OK) != 0) {
-    throw std::runtime_error("cannot be kept in \"" + folder.string() +
-                             "\", each start builds it anew; set camera.cache_directory");
+  try {
+    if (folder.empty()) throw ConfigError("", "", "no cache directory is set", "");
+    check_replaceable(folder / "warp.table");
+  } catch (const ConfigError& error) {
+    throw std::runtime_error(std::string(error.what()) +
+                             "; it is not kept, each start builds it anew; set "
+                             "camera.cache_directory");
   }
   return "kept in " + folder.string();
 }
@@ -182,6 +186,13 @@ std::vector<Finding> examine(const DaemonConfig& config) {
   for (const PublishTarget& target : config.publish.to) {
     findings.push_back(look(name(target.bus), target_remark(target, config.zenoh),
                             [&] { return target_detail(target, config); }));
+  }
+  const std::filesystem::path& trace = config.service.trace;
+  if (!trace.empty()) {
+    findings.push_back(look("trace", as_user("writes in /var/lib/bole only"), [&] {
+      check_replaceable(trace);
+      return trace.string();
+    }));
   }
   return findings;
 }

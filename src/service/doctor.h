@@ -15,8 +15,9 @@ struct Finding {
 };
 
 /// Checks what a daemon of this configuration needs: the camera's files, its table, the source, the
-/// buses. Touches nothing and streams nothing. Where another user may find otherwise, `detail` says
-/// as which user it was checked and, unless that is the service's, what holds for the service.
+/// buses, the trace. Leaves nothing behind and streams nothing. Where another user may find
+/// otherwise, `detail` says as which user it was checked and, unless that is the service's, what
+/// holds for the service.
 std::vector<Finding> examine(const DaemonConfig& config);
 
 }  // namespace bole

@@ -3,6 +3,7 @@
 #include <pwd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include <gmock/gmock.h>
@@ -31,13 +32,14 @@ class Doctor : public testing::Test {
   }
   ~Doctor() override { ::unsetenv("CACHE_DIRECTORY"); }
 
-  std::vector<Finding> findings() const {
+  std::vector<Finding> findings(const std::vector<Setting>& more = {}) const {
     const std::string targets = R"(["lcm", ")" + ("jsonl:" + (folder_ / "lists").string()) + "\"]";
-    return examine(load_daemon_config(
-        std::nullopt,
-        {{"camera.file", toml_text(BOLE_SOURCE_DIR "/tests/hil/cameras/640x480/camera.toml")},
-         {"source.uri", toml_text("replay:" + folder_.path().string())},
-         {"publish.to", targets}}));
+    std::vector<Setting> settings = {
+        {"camera.file", toml_text(BOLE_SOURCE_DIR "/tests/hil/cameras/640x480/camera.toml")},
+        {"source.uri", toml_text("replay:" + folder_.path().string())},
+        {"publish.to", targets}};
+    settings.insert(settings.end(), more.begin(), more.end());
+    return examine(load_daemon_config(std::nullopt, settings));
   }
 
   const test::TemporaryFolder folder_;
@@ -62,6 +64,30 @@ TEST_F(Doctor, SaysNothingOfTheServiceWithinIt) {
   EXPECT_THAT(detail_of(found, "warp table"),
               AllOf(HasSubstr(folder_.path().string()), HasSubstr(as_us_ + ")")));
   EXPECT_THAT(detail_of(found, "jsonl"), HasSubstr(as_us_ + ")"));
+}
+
+TEST_F(Doctor, SaysWhatBoledRefusesTheTableFor) {
+  const auto camera = folder_.write("camera.toml", R"(
+[camera]
+model = "pinhole"
+horizontal_fov_deg = 60
+width = 640
+height = 480
+[mount]
+height_m = 1
+pitch_deg = -89
+)");
+  const auto found = findings({{"camera.file", toml_text(camera.string())}});
+  const auto table = std::ranges::find(found, "warp table", &Finding::check);
+  ASSERT_NE(table, found.end());
+  EXPECT_FALSE(table->good) << table->detail;
+}
+
+TEST_F(Doctor, SaysThatATraceCannotBeWritten) {
+  const auto found = findings({{"service.trace", toml_text("/proc/trace")}});
+  ASSERT_EQ(found.back().check, "trace");
+  EXPECT_FALSE(found.back().good);
+  EXPECT_THAT(found.back().detail, HasSubstr("/proc/trace: cannot be written"));
 }
 
 }  // namespace
