@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <system_error>
 
 #include "base/errors.h"
 
@@ -61,8 +62,10 @@ DaemonConfig DaemonOptions::load() const {
   std::optional<std::filesystem::path> file;
   if (!config.empty()) {
     file = config;
-  } else if (std::filesystem::exists(kDefaultConfig)) {
-    file = kDefaultConfig;
+  } else {
+    std::error_code error;  // what may not be looked at is told by its reader
+    const auto kind = std::filesystem::status(kDefaultConfig, error).type();
+    if (kind != std::filesystem::file_type::not_found) file = kDefaultConfig;
   }
   std::vector<Setting> all = set;
   for (const auto& [option, setting] : named) {

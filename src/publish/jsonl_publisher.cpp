@@ -18,12 +18,21 @@
 namespace bole {
 namespace {
 
-int open_target(const std::filesystem::path& target, JsonlPublisher::Earlier earlier) {
+int open_for_lines(const std::filesystem::path& target, JsonlPublisher::Earlier earlier) {
   if (target == "-") return ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
   const int emptied = earlier == JsonlPublisher::Earlier::erased ? O_TRUNC : 0;
   // Not to wait for a pipe's reader, whom nobody could interrupt.
   constexpr int kFlags = O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NONBLOCK;
   return ::open(target.c_str(), kFlags | emptied, 0644);
+}
+
+UniqueFd open_target(const std::filesystem::path& target, JsonlPublisher::Earlier earlier,
+                     const std::string& origin) {
+  UniqueFd fd(open_for_lines(target, earlier));
+  if (fd) return fd;
+  throw ConfigError(origin, "publish.to",
+                    "jsonl:" + target.string() + " cannot be written: " + error_text(errno),
+                    "give a path that may be written to, or - for standard output");
 }
 
 // A daemon before us may have been cut off in the middle of a line.
@@ -36,14 +45,9 @@ bool ends_within_a_line(const std::filesystem::path& target) {
 
 }  // namespace
 
-JsonlPublisher::JsonlPublisher(const std::filesystem::path& target, Earlier earlier)
-    : fd_(open_target(target, earlier)), torn_(ends_within_a_line(target)) {
-  if (!fd_) {
-    throw ConfigError("publish", "jsonl:" + target.string(),
-                      "cannot be written: " + error_text(errno),
-                      "give a path that may be written to, or - for standard output");
-  }
-}
+JsonlPublisher::JsonlPublisher(const std::filesystem::path& target, Earlier earlier,
+                               const std::string& origin)
+    : fd_(open_target(target, earlier, origin)), torn_(ends_within_a_line(target)) {}
 
 void JsonlPublisher::publish(MessageKind /*kind*/, std::span<const std::byte> bytes,
                              const std::string& file) {

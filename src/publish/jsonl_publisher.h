@@ -18,8 +18,9 @@ class JsonlPublisher : public Publisher {
 
   /// `target`: a path, or "-" for standard output. Every line goes to the end of the file, also
   /// after somebody else has cut it, as logrotate's copytruncate does. Throws ConfigError when it
-  /// cannot be written.
-  explicit JsonlPublisher(const std::filesystem::path& target, Earlier earlier = Earlier::kept);
+  /// cannot be written, which names `origin` as the configuration's file.
+  explicit JsonlPublisher(const std::filesystem::path& target, Earlier earlier = Earlier::kept,
+                          const std::string& origin = "");
 
   std::string name() const override { return "jsonl"; }
   bool carries(MessageKind kind) const override { return kind == MessageKind::trees; }

@@ -16,9 +16,10 @@ std::unique_ptr<Publisher> make_zenoh(const DaemonConfig& config, const std::str
                                           ZenohAnswers{config.text, calibration});
 }
 #else
-std::unique_ptr<Publisher> make_zenoh(const DaemonConfig& /*config*/,
+std::unique_ptr<Publisher> make_zenoh(const DaemonConfig& config,
                                       const std::string& /*calibration*/) {
-  throw ConfigError("publish", "zenoh", "is not in this build", "install cargo and build again");
+  throw ConfigError(config.file, "publish.to", "names zenoh, which is not in this build",
+                    "install cargo and build again");
 }
 #endif
 
@@ -29,7 +30,7 @@ std::unique_ptr<Publisher> make_publisher(const PublishTarget& target, const Dae
     case PublishTarget::Bus::lcm:
       return std::make_unique<LcmPublisher>(config.lcm);
     case PublishTarget::Bus::jsonl:
-      return std::make_unique<JsonlPublisher>(target.path, earlier);
+      return std::make_unique<JsonlPublisher>(target.path, earlier, config.file);
     case PublishTarget::Bus::zenoh:
       break;
   }

@@ -12,13 +12,14 @@
 namespace bole {
 namespace {
 
-SourceSetup make_replay(const DaemonConfig::SourcePart& part, const std::string& path,
-                        const Camera& camera) {
+SourceSetup make_replay(const DaemonConfig& config, const std::string& path, const Camera& camera) {
+  const DaemonConfig::SourcePart& part = config.source;
   ReplayOptions options;
+  options.origin = config.file;
   options.path = path;
   options.size = camera.model->image_size();
   options.mask = mask_file(camera);
-  options.pace = parse_replay_pace(part.pace);
+  options.pace = parse_replay_pace(part.pace, config.file);
   options.loop = part.loop;
   options.start_s = part.start;
   options.end_s = part.end;
@@ -75,7 +76,7 @@ SourceSetup make_source(const DaemonConfig& config, const Camera& camera) {
   const std::size_t colon = uri.find(':');
   const std::string scheme = uri.substr(0, colon);
   const std::string rest = colon == std::string::npos ? "" : uri.substr(colon + 1);
-  if (scheme == "replay" && !rest.empty()) return make_replay(config.source, rest, camera);
+  if (scheme == "replay" && !rest.empty()) return make_replay(config, rest, camera);
   if (scheme == "v4l2" && !rest.empty()) {
     return make_camera(config, rest, camera, ListSource::v4l2, make_v4l2_source);
   }

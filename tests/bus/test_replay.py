@@ -138,4 +138,4 @@ def test_a_pipe_that_nobody_reads_is_an_error_and_nothing_to_wait_for(boled, tmp
     os.mkfifo(tmp_path / "pipe")
     run = boled("--publish", f"jsonl:{tmp_path}/pipe")
     assert run.returncode == 2
-    assert f"jsonl:{tmp_path}/pipe: cannot be written" in run.stderr
+    assert f"publish.to: jsonl:{tmp_path}/pipe cannot be written: No such device" in run.stderr

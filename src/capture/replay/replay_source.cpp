@@ -225,18 +225,18 @@ std::chrono::nanoseconds ReplaySource::frame_period() const {
 
 void check(const ReplayOptions& options) {
   if (!(options.start_s >= 0 && options.start_s < options.end_s)) {
-    throw ConfigError("", "source.start_s, source.end_s", "are no span of time",
+    throw ConfigError(options.origin, "source.start_s, source.end_s", "are no span of time",
                       "give seconds from the first frame on, start below end");
   }
   if (options.restamp && options.pace.kind == ReplayPace::Kind::lockstep) {
-    throw ConfigError("", "source.restamp", "does not go with source.pace = lockstep",
+    throw ConfigError(options.origin, "source.restamp", "does not go with source.pace = lockstep",
                       "in lockstep the recorded stamps are the clock");
   }
 }
 
 }  // namespace
 
-ReplayPace parse_replay_pace(std::string_view text) {
+ReplayPace parse_replay_pace(std::string_view text, const std::string& origin) {
   using Kind = ReplayPace::Kind;
   if (text == "realtime") return {Kind::realtime, 0};
   if (text == "fast") return {Kind::fast, 0};
@@ -252,7 +252,7 @@ ReplayPace parse_replay_pace(std::string_view text) {
       return {Kind::rate, rate_hz};
     }
   }
-  throw ConfigError("", "source.pace", "is \"" + std::string(text) + "\"",
+  throw ConfigError(origin, "source.pace", "is \"" + std::string(text) + "\"",
                     "must be realtime, rate:N (0.01 to 1000 frames a second), fast or lockstep");
 }
 

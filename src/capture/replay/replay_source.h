@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include "base/clock.h"
@@ -23,10 +24,13 @@ struct ReplayPace {
   double rate_hz = 0;
 };
 
-/// "realtime", "rate:N" (0.01 to 1000 frames a second), "fast" or "lockstep". Throws ConfigError.
-ReplayPace parse_replay_pace(std::string_view text);
+/// "realtime", "rate:N" (0.01 to 1000 frames a second), "fast" or "lockstep". Throws ConfigError,
+/// which names `origin` as the file.
+ReplayPace parse_replay_pace(std::string_view text, const std::string& origin = "");
 
 struct ReplayOptions {
+  /// Where these settings stand, for messages only.
+  std::string origin;
   /// A folder of images or raw frames, one image or raw frame, or a video file.
   std::filesystem::path path;
   /// What the calibration holds for: the size of raw frames, and what images must have. Zero: any
@@ -49,8 +53,9 @@ struct ReplayOptions {
 /// mjpeg file in a folder is one frame as such a camera sends it, its luma read alone, while a jpg
 /// is a picture in colour), in the byte order of their names; other files and folders in it do not
 /// count. Stamps come from the
-/// folder's `timestamps.csv` (lines `file,utime_us`), else frame k is at k / rate_hz from 0; a
-/// video's stamps follow from its own rate. The sensor's count counts files, bad ones too.
+/// folder's `timestamps.csv` (lines `file,utime_us`, never falling in that order), else frame k is
+/// at k / rate_hz from 0; a video's stamps follow from its own rate. The sensor's count counts
+/// files, bad ones too.
 ///
 /// A bad file in between is a Grab::bad_frame that names it. With `loop` the stamps go on rising
 /// from round to round by the length of a round. Closing and opening again goes on where it was.

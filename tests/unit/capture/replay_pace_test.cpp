@@ -137,6 +137,8 @@ TEST(Replay, RefusesAPaceThatIsNone) {
        {"", "slow", "rate", "rate:", "rate:0", "rate:-1", "rate:nan", "rate:1e9", "rate:5x"}) {
     EXPECT_THROW(parse_replay_pace(text), ConfigError) << text;
   }
+  EXPECT_THAT(test::config_problem([] { parse_replay_pace("slow", "boled.toml"); }),
+              HasSubstr("boled.toml: source.pace: is \"slow\""));
   EXPECT_EQ(parse_replay_pace("rate:2.5").rate_hz, 2.5);
 }
 

@@ -11,6 +11,7 @@
 
 #include "publish/encoder.h"
 #include "sample_lists.h"
+#include "support/config_problem.h"
 #include "support/temporary_folder.h"
 
 namespace bole {
@@ -92,6 +93,15 @@ TEST(JsonlPublisher, BeginsANewLineAfterOneThatTheDiskTookInPart) {
   ASSERT_EQ(lines.size(), 4U);
   EXPECT_EQ(lines[1].size(), 20U);
   for (const std::size_t k : {2, 3}) EXPECT_EQ(lines[k], lines[0]);
+}
+
+TEST(JsonlPublisher, SaysWhyItCannotWriteAndWhichKeySaysSo) {
+  const test::TemporaryFolder folder;
+  EXPECT_THAT(test::config_problem([&] {
+                JsonlPublisher(folder.path(), JsonlPublisher::Earlier::kept, "boled.toml");
+              }),
+              testing::AllOf(testing::StartsWith("boled.toml: publish.to: jsonl:"),
+                             testing::HasSubstr("Is a directory")));
 }
 
 }  // namespace
