@@ -22,7 +22,12 @@ class CaptureError : public std::runtime_error {
 /// Why there is no camera, in the same words whether it was lost or not found: one outage is told
 /// once. The camera's name comes last, in brackets, since a status has room for 80 bytes.
 inline const std::string kNotThere = "is not there";
+inline const std::string kPlugItIn = "; plug it in, or choose from bolectl cameras";
 inline std::string in_brackets(const std::string& name) { return " (" + name + ")"; }
+/// What went wrong with the camera `name`, and after all else, for logs, what mends its absence.
+inline std::string trouble_of(const std::string& name, const std::string& reason) {
+  return reason + in_brackets(name) + (reason == kNotThere ? kPlugItIn : "");
+}
 
 /// What came of waiting for a frame.
 struct Grab {

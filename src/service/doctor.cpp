@@ -78,7 +78,7 @@ std::string libcamera_detail(const std::string& uri) {
   for (const CameraInfo& camera : libcamera_plugin().list()) {
     if (camera.source == uri) return uri + ", " + camera.model;
   }
-  throw std::runtime_error(uri + " is not there; plug it in, or choose from bolectl cameras");
+  throw std::runtime_error(uri + " " + kNotThere + kPlugItIn);
 }
 
 std::string source_detail(const DaemonConfig& config, const Camera& camera) {
@@ -89,8 +89,7 @@ std::string source_detail(const DaemonConfig& config, const Camera& camera) {
   try {
     return device_detail(name);
   } catch (const CaptureError& error) {
-    throw std::runtime_error(name + " " + error.what() +
-                             "; plug it in, or choose from bolectl cameras");
+    throw std::runtime_error(name + " " + error.what() + kPlugItIn);
   }
 }
 

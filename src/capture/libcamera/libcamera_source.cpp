@@ -102,7 +102,7 @@ class LibcameraSource final : public FrameSource {
       start();
     } catch (const CaptureError& error) {
       if (!unplugged_) manager_.reset();
-      throw CaptureError(error.what() + in_brackets(id_));
+      throw CaptureError(trouble_of(id_, error.what()));
     }
   }
   Grab grab(std::chrono::nanoseconds timeout) override;
@@ -239,7 +239,7 @@ void LibcameraSource::drain(Grab& grab) {
       refuse(completed, DropCause::too_short, "a frame was shorter than its format", grab);
     }
   }
-  if (session_->gone()) grab.lose(kNotThere + in_brackets(id_));
+  if (session_->gone()) grab.lose(trouble_of(id_, kNotThere));
 }
 
 void LibcameraSource::take(const LibcameraSession::Completed& completed, const ImageView& image,

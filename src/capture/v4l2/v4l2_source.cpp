@@ -64,7 +64,7 @@ void V4l2Source::open() {
   try {
     start();
   } catch (const CaptureError& error) {
-    throw CaptureError(error.what() + in_brackets(name_));
+    throw CaptureError(trouble_of(name_, error.what()));
   }
 }
 
@@ -119,7 +119,7 @@ Grab V4l2Source::grab(std::chrono::nanoseconds timeout) {
     } else if (told != 0) {
       drain(grab);
       if (grab.kind == Grab::Kind::timeout && (told & (POLLERR | POLLHUP)) != 0) {
-        grab.lose("reports an error" + in_brackets(name_));
+        grab.lose(trouble_of(name_, "reports an error"));
       }
     }
   } while (grab.kind == Grab::Kind::timeout && clock_.mono_ns() < deadline_ns);
@@ -141,7 +141,7 @@ void V4l2Source::drain(Grab& grab) {
     }
   }
   if (error == EAGAIN) return;
-  grab.lose((error == ENODEV ? kNotThere : "failed: " + error_text(error)) + in_brackets(name_));
+  grab.lose(trouble_of(name_, error == ENODEV ? kNotThere : "failed: " + error_text(error)));
 }
 
 void V4l2Source::take(const v4l2_buffer& buffer, const ImageView& image, Grab& grab) {

@@ -164,10 +164,10 @@ std::string why_it_does_not_open(const std::string& device) {
 TEST(V4l2Source, TellsWhyACameraCannotBeOpened) {
   const test::TemporaryFolder folder;
   EXPECT_EQ(why_it_does_not_open("/dev/v4l/by-id/usb-none"),
-            "is not there (/dev/v4l/by-id/usb-none)");
-  EXPECT_EQ(why_it_does_not_open("no-such-serial"), "is not there (no-such-serial)");
+            "is not there (/dev/v4l/by-id/usb-none); plug it in, or choose from bolectl cameras");
+  EXPECT_THAT(why_it_does_not_open("no-such-serial"), HasSubstr("is not there (no-such-serial);"));
   EXPECT_THAT(why_it_does_not_open("/dev/null"), HasSubstr("is no Video4Linux device"));
-  EXPECT_EQ(why_it_does_not_open(""), "is not there ()");
+  EXPECT_THAT(why_it_does_not_open(""), HasSubstr("is not there ();"));
 }
 
 // /dev/null opens, but has no settings.
