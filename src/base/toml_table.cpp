@@ -143,7 +143,28 @@ void TomlTable::done() const {
   }
 }
 
+void refuse_deep_keys(std::string_view text, const std::string& file) {
+  constexpr int kMostDots = 64;  // a row of dots, which no key has, counts once
+  int line = 1;
+  int dots = 0;
+  char before = '\n';
+  for (const char c : text) {
+    dots += c == '.' && before != '.' ? 1 : 0;
+    if (dots > kMostDots) {
+      throw ConfigError(file, "line " + std::to_string(line),
+                        "has more than " + std::to_string(kMostDots) + " dots",
+                        "nest keys less deep, break a long list into lines");
+    }
+    if (c == '\n') {
+      ++line;
+      dots = 0;
+    }
+    before = c;
+  }
+}
+
 toml::table parse_toml(std::string_view text, const std::string& file) {
+  refuse_deep_keys(text, file);
   try {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {

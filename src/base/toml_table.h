@@ -60,6 +60,10 @@ class TomlTable {
   std::set<std::string, std::less<>> read_;
 };
 
+/// Throws ConfigError for a line of TOML with so many dots that the tables of a key in it might be
+/// nested too deep for the stack of the parser, which recurses into them.
+void refuse_deep_keys(std::string_view text, const std::string& file);
+
 /// Parses `text` as TOML; a syntax error becomes ConfigError with line and column.
 toml::table parse_toml(std::string_view text, const std::string& file);
 

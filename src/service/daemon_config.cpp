@@ -36,6 +36,7 @@ toml::table parse_value(const Setting& setting) {
 }
 
 void lay_over(toml::table& root, const Setting& setting) {
+  refuse_deep_keys(setting.key + setting.value, "--set");
   toml::table* table = &root;
   std::string_view rest = setting.key;
   for (std::size_t dot; (dot = rest.find('.')) != std::string_view::npos;

@@ -127,6 +127,18 @@ TEST(DaemonConfig, ASettingWithoutKeyOrValueSignIsRefused) {
   EXPECT_THROW(with({"publish..min_score=1"}), ConfigError);
 }
 
+TEST(DaemonConfig, RefusesKeysNestedTooDeep) {
+  std::string deep = "a";
+  for (int k = 0; k < 40'000; ++k) deep += ".a";
+  EXPECT_THAT([&] { with({deep + "=1"}); }, ThrowsMessage<ConfigError>(HasSubstr("--set: line 1")));
+  EXPECT_THAT([&] { with({"source.uri={" + deep + "=1}"}); },
+              ThrowsMessage<ConfigError>(HasSubstr("dots")));
+  const test::TemporaryFolder folder;
+  const auto file = folder.write("boled.toml", "# " + std::string(99, '.') + "\n" + deep + " = 1");
+  EXPECT_THAT([&] { load_daemon_config(file, {}); },
+              ThrowsMessage<ConfigError>(HasSubstr("boled.toml: line 2: has more than 64 dots")));
+}
+
 TEST(DaemonConfig, TheCrcTellsDaemonsApartThatMakeOtherLists) {
   const std::uint32_t crc = config_crc(with({}), 1);
   EXPECT_EQ(config_crc(with({"publish.to=[\"jsonl:-\"]"}), 1), crc);
