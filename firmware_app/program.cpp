@@ -1,5 +1,8 @@
 #include "program.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cstdio>
 #include <cstdlib>
 
@@ -40,6 +43,13 @@ void set_up_log() {
   spdlog::set_default_logger(std::move(logger));
 }
 
+// Else the first file that is opened takes the place of standard output.
+void open_standard_streams() {
+  for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; ++fd) {
+    if (::fcntl(fd, F_GETFD) < 0) ::open("/dev/null", O_RDWR);  // gets the lowest number free
+  }
+}
+
 void add_version(CLI::App& app, const std::string& text) {
   app.set_version_flag("--version", text);
   for (CLI::App* command : app.get_subcommands({})) add_version(*command, text);
@@ -54,6 +64,7 @@ int fail(const char* name, const char* problem, int code) {
 
 int run_program(const char* name, const char* description, void (*set_up)(CLI::App&), int argc,
                 char** argv) {
+  open_standard_streams();
   CLI::App app{description, name};
   app.footer("Exit code: 0 done, 2 wrong usage or configuration, 1 anything else.");
   try {

@@ -47,7 +47,9 @@ bool ends_within_a_line(const std::filesystem::path& target) {
 
 JsonlPublisher::JsonlPublisher(const std::filesystem::path& target, Earlier earlier,
                                const std::string& origin)
-    : fd_(open_target(target, earlier, origin)), torn_(ends_within_a_line(target)) {}
+    : fd_(open_target(target, earlier, origin)),
+      to_stdout_(target == "-"),
+      torn_(ends_within_a_line(target)) {}
 
 void JsonlPublisher::publish(MessageKind /*kind*/, std::span<const std::byte> bytes,
                              const std::string& file) {
@@ -67,7 +69,9 @@ void JsonlPublisher::write_all(std::string_view text) {
     const ssize_t written =
         ::write(fd_.get(), text.data(), std::min<std::size_t>(text.size(), PIPE_BUF));
     if (written < 0 && errno != EINTR && errno != EAGAIN) {
-      throw BusError("cannot be written: " + error_text(errno));
+      const std::string why = "cannot be written: " + error_text(errno);
+      if (errno == EPIPE && to_stdout_) throw BusGone(why);
+      throw BusError(why);
     }
     if (written <= 0) continue;
     text.remove_prefix(static_cast<std::size_t>(written));

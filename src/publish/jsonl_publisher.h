@@ -10,7 +10,8 @@
 namespace bole {
 
 /// Tree lists as lines of JSON, each written at once; no statuses: a line is a list. One that was
-/// only taken in part, as by a full disk, is left behind; the next begins on a new line.
+/// only taken in part, as by a full disk, is left behind; the next begins on a new line. Standard
+/// output whose reader has gone is a BusGone; a named pipe may find another.
 class JsonlPublisher : public Publisher {
  public:
   /// What becomes of the lists that the file holds already.
@@ -34,6 +35,7 @@ class JsonlPublisher : public Publisher {
   UniqueFd fd_;
   Wakeup interrupted_;
   std::string line_;
+  const bool to_stdout_;
   bool torn_;  // the file ends within a line
 };
 

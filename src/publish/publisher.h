@@ -15,6 +15,12 @@ class BusError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Why a bus takes no message any more, ever.
+class BusGone : public BusError {
+ public:
+  using BusError::BusError;
+};
+
 /// One bus. Used by one thread of its own, so that a slow bus delays nothing else.
 class Publisher {
  public:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include <spdlog/spdlog.h>
 
@@ -76,6 +77,9 @@ void BusWorker::publish(MessageKind kind, const Message& message) {
     if (trace_ != nullptr && kind == MessageKind::trees) {
       trace_->record("hand over", Trace::Lane::bus, message.seq, message.processed_ns, done_ns);
     }
+  } catch (const BusGone& error) {
+    record_failure(kind, error.what());
+    record_gone();
   } catch (const std::exception& error) {
     record_failure(kind, error.what());
   }
@@ -100,6 +104,19 @@ void BusWorker::record_failure(MessageKind kind, const std::string& reason) {
   health_.healthy = 0;
   health_.last_error = reason;
   if (kind == MessageKind::trees) ++health_.failed;
+}
+
+void BusWorker::record_gone() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (std::exchange(gone_, true)) return;
+  }
+  on_finished_();
+}
+
+bool BusWorker::gone() const {
+  const std::lock_guard lock(mutex_);
+  return gone_;
 }
 
 bool BusWorker::finished() const {

@@ -27,7 +27,7 @@ class BusWorker {
  public:
   /// `when_full` holds for lists; a status is always overwritten by the next. `bell` wakes the
   /// thread, and those of the other buses with it. `on_finished` is called from the bus's thread
-  /// when it ends. `trace` may be null.
+  /// when it ends, and when the bus is gone. `trace` may be null.
   BusWorker(std::unique_ptr<Publisher> publisher, WhenFull when_full,
             std::shared_ptr<Doorbell> bell, std::function<void()> on_finished,
             Trace* trace = nullptr);
@@ -46,6 +46,8 @@ class BusWorker {
   /// Makes a publish() that waits give up.
   void interrupt() noexcept { publisher_->interrupt(); }
   bool finished() const;
+  /// It takes no message any more, ever.
+  bool gone() const;
 
   bus_t health() const;
 
@@ -61,6 +63,7 @@ class BusWorker {
   void publish(MessageKind kind, const Message& message);
   void record_success(MessageKind kind, std::int64_t handover_ns);
   void record_failure(MessageKind kind, const std::string& reason);
+  void record_gone();
 
   std::unique_ptr<Publisher> publisher_;
   const WhenFull when_full_;
@@ -74,6 +77,7 @@ class BusWorker {
   DurationHistogram handover_;
   std::set<std::string> told_;  // reasons of this outage
   bool finished_ = false;
+  bool gone_ = false;
 
   std::thread thread_;
 };

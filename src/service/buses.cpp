@@ -41,6 +41,11 @@ bool Buses::finished() const {
   return std::ranges::all_of(workers_, [](const auto& worker) { return worker->finished(); });
 }
 
+bool Buses::gone() const {
+  return !workers_.empty() &&
+         std::ranges::all_of(workers_, [](const auto& worker) { return worker->gone(); });
+}
+
 std::vector<bus_t> Buses::health() const {
   std::vector<bus_t> health;
   for (const auto& worker : workers_) health.push_back(worker->health());

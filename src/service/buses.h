@@ -33,6 +33,8 @@ class Buses {
   void close();
   void interrupt() noexcept;
   bool finished() const;
+  /// All are gone, and there are any: nobody will hear us again.
+  bool gone() const;
 
   /// Of each bus, in the order of the publishers.
   std::vector<bus_t> health() const;

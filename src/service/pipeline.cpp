@@ -168,7 +168,9 @@ void Pipeline::run(int stop_fd) {
       next_beat_ns = now_ns() + kHeartbeatNs;
     }
     const std::int64_t until_ns = closing ? give_up_ns : std::min(next_beat_ns, give_up_ns);
-    if (wait(give_up_ns == kNever ? stop_fd : -1, until_ns)) {
+    const bool stopping = give_up_ns != kNever;
+    const bool told = wait(stopping ? -1 : stop_fd, until_ns);
+    if (told || (!stopping && buses_.gone())) {
       service_manager_.stopping();
       supervisor_.interrupt();
       give_up_ns = now_ns() + kBusPatienceNs;

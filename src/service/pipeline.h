@@ -28,7 +28,7 @@ class Pipeline {
   Pipeline& operator=(const Pipeline&) = delete;
 
   /// Runs until the source ends and all that was processed is published, or until `stop_fd` becomes
-  /// readable.
+  /// readable or every bus is gone.
   void run(int stop_fd);
 
   std::vector<bus_t> bus_health() const { return buses_.health(); }

@@ -139,3 +139,20 @@ def test_a_pipe_that_nobody_reads_is_an_error_and_nothing_to_wait_for(boled, tmp
     run = boled("--publish", f"jsonl:{tmp_path}/pipe")
     assert run.returncode == 2
     assert f"publish.to: jsonl:{tmp_path}/pipe cannot be written: No such device" in run.stderr
+
+
+def test_boled_ends_when_the_only_reader_has_gone(programs, drive):
+    command = [programs / "boled", "--camera", drive / "camera.toml", "--source", f"replay:{drive}",
+               "--loop", "--publish", "jsonl:-"]
+    with running(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as daemon:
+        daemon.stdout.readline()
+        daemon.stdout.close()
+        assert daemon.wait(5) == 0
+
+
+def test_a_closed_standard_output_is_taken_for_dev_null(programs, drive):
+    command = [programs / "boled", "--camera", drive / "camera.toml", "--source", f"replay:{drive}",
+               "--pace", "lockstep", "--publish", "jsonl:-"]
+    with running(command, stderr=subprocess.PIPE, preexec_fn=lambda: os.close(1)) as daemon:
+        assert daemon.wait(20) == 0
+        assert b"20 published" in daemon.stderr.read()
