@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/errors.h"
+#include "capture/replay/frame_file.h"
 #include "capture/replay/frame_names.h"
 #include "commands/commands.h"
 #include "commands/progress.h"
@@ -38,18 +39,20 @@ struct Options {
 
 void annotate(const Options& options, const Camera& camera, const WarpTable& table) {
   Warper warper(table);
+  FrameReader reader(table.image_size());
+  FrameSlot frame;
   std::size_t bad = 0;
   for (const fs::path image : options.images) {
-    cv::Mat3b picture;
     try {
-      picture = read_picture(image);
-      warper.warp(view_of(picture));  // refuses a picture that is not this camera's
+      reader.read(image, frame);
+      warper.warp(frame.view());  // refuses a frame that is damaged
     } catch (const std::runtime_error& error) {
       spdlog::error("{}: {}", image.string(), error.what());
       ++bad;
       continue;
     }
-    write_frame_annotations(options.annotate, image.stem().string(), camera, table, picture, {});
+    write_frame_annotations(options.annotate, image.stem().string(), camera, table,
+                            colours_of(frame), {});
   }
   if (bad > 0) {
     throw std::runtime_error("images that could not be drawn on: " + std::to_string(bad) + " of " +
@@ -224,7 +227,8 @@ void add_calib(CLI::App& app) {
           "Folder for two pictures an image: panorama and raw image, with the horizon, the "
           "ground at whole metres and the robot's sides")
       ->type_name("FOLDER");
-  check_command->add_option("IMAGE", options->images, "Image files to annotate")->type_name("");
+  check_command->add_option("IMAGE", options->images, "Images or raw frames to annotate")
+      ->type_name("");
   check_command->callback([options] { check(*options); });
 
   CLI::App* mount_command = command->add_subcommand(

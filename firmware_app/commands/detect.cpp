@@ -3,6 +3,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "capture/replay/frame_file.h"
 #include "commands/commands.h"
 #include "evaluate/annotate.h"
 #include "evaluate/detections.h"
@@ -26,12 +27,13 @@ void detect(const Options& options) {
   if (!options.annotate.empty()) prepare_annotations(options.annotate, options.images);
   std::size_t bad = 0;
   std::string first_bad;  // the image and what is wrong with it
+  FrameReader reader(detector.table().image_size());
+  FrameSlot frame;
   for (const fs::path image : options.images) {
-    cv::Mat3b picture;
     std::span<const Tree> trees;
     try {
-      picture = read_picture(image);
-      trees = detector.detect(detector.warp(picture));
+      reader.read(image, frame);
+      trees = detector.detect(detector.warp(frame.view()));
     } catch (const std::runtime_error& error) {
       std::puts(error_line(image.filename().string(), error.what()).c_str());
       if (bad++ == 0) first_bad = image.string() + ": " + error.what();
@@ -41,7 +43,7 @@ void detect(const Options& options) {
     flush_output();
     if (!options.annotate.empty()) {
       write_annotations(options.annotate, image.stem().string(), detector.camera(),
-                        detector.table(), picture, trees);
+                        detector.table(), colours_of(frame), trees);
     }
   }
   if (bad > 1) first_bad += "; bad images in all: " + std::to_string(bad);
@@ -64,7 +66,7 @@ void add_detect(CLI::App& app) {
       ->add_option("--annotate", options->annotate,
                    "Folder for three pictures an image: panorama, raw image, map")
       ->type_name("FOLDER");
-  command->add_option("IMAGE", options->images, "Image files")->type_name("")->required();
+  command->add_option("IMAGE", options->images, "Images or raw frames")->type_name("")->required();
   command->callback([options] { detect(*options); });
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "base/errors.h"
+#include "capture/replay/frame_file.h"
 #include "commands/commands.h"
 #include "commands/progress.h"
 #include "detect/tracking/tracker.h"
@@ -61,11 +62,14 @@ class DriveTracker {
 Run run(ImageDetector& detector, DetectorMode mode, const Truth& truth, const Options& options) {
   Run result;
   DriveTracker tracker(mode, options.min_score);
+  FrameReader reader(detector.table().image_size());
+  FrameSlot slot;
   int done = 0;
   for (const TruthFrame& frame : truth.frames) {
     const fs::path file = fs::path(options.folder) / frame.file;
     try {
-      const PanoramaView panorama = detector.warp(read_picture(file));
+      reader.read(file, slot);
+      const PanoramaView panorama = detector.warp(slot.view());
       const std::span<const Tree> trees = detector.detect(panorama);
       std::vector<Tree>& alone = result.detections[frame.file];
       alone.assign(trees.begin(), trees.end());

@@ -26,8 +26,7 @@ void FramePool::give_back(int index) noexcept {
 
 Frame FramePool::frame(int index, FrameStamp stamp, std::int64_t sensor_seq) {
   const FrameSlot& filled = slot(index);
-  Frame frame(view_packed(filled.format, filled.size, filled.bytes).value(), stamp, sensor_seq,
-              shared_from_this(), index);
+  Frame frame(filled.view(), stamp, sensor_seq, shared_from_this(), index);
   frame.set_file(filled.file);
   return frame;
 }

@@ -16,6 +16,9 @@ struct FrameSlot {
   ImageSize size;
   std::vector<std::byte> bytes;
   std::string file;  ///< name without folders
+
+  /// The bytes must suffice for the format and the size.
+  ImageView view() const { return view_packed(format, size, bytes).value(); }
 };
 
 /// Frames in ordinary memory that is used again and again; as many slots as are in use at once.

@@ -195,9 +195,10 @@ void write_worst_frames(const std::filesystem::path& folder, const Truth& truth,
     if (frames[k].first == 0 || found == detections.end()) continue;
     char rank[32];
     (void)std::snprintf(rank, sizeof rank, "worst_%02d_", static_cast<int>(k) + 1);
-    write_picture(folder / (rank + std::filesystem::path(frame.file).stem().string() + ".png"),
-                  draw_panorama(camera, table, read_picture(images / frame.file),
-                                judged_marks(frame, found->second, min_score, truth.height)));
+    write_picture(
+        folder / (rank + std::filesystem::path(frame.file).stem().string() + ".png"),
+        draw_panorama(camera, table, read_picture(images / frame.file, table.image_size()),
+                      judged_marks(frame, found->second, min_score, truth.height)));
   }
 }
 

@@ -6,14 +6,19 @@
 
 #include <opencv2/core.hpp>
 
+#include "capture/frame_pool.h"
 #include "detect/detector.h"
 #include "warp/warper.h"
 
 namespace bole {
 
-/// A picture as 8-bit BGR, read as replay reads it. Throws std::runtime_error when it is missing,
-/// damaged or no picture.
-cv::Mat3b read_picture(const std::filesystem::path& file);
+/// A frame of any format as 8-bit BGR, for people to look at.
+cv::Mat3b colours_of(const FrameSlot& frame);
+
+/// A file's frame as 8-bit BGR, read as replay reads it. `size`: the calibration's, which raw
+/// frames need; zero: an image of any size. Throws std::runtime_error when it is missing, damaged,
+/// no frame or not of that size.
+cv::Mat3b read_picture(const std::filesystem::path& file, ImageSize size = {});
 
 /// The picture's own pixels, as an image.
 ImageView view_of(const cv::Mat3b& picture);
@@ -31,9 +36,9 @@ class ImageDetector {
   const Camera& camera() const { return camera_; }
   const WarpTable& table() const { return table_; }
 
-  /// The green panorama of `picture`, until the next call. Throws BadFrame when the size is not
-  /// the calibration's.
-  PanoramaView warp(const cv::Mat3b& picture);
+  /// The green panorama of `image`, until the next call. Throws BadFrame when it is damaged or its
+  /// size is not the calibration's.
+  PanoramaView warp(const ImageView& image) { return warper_.warp(image); }
 
   /// The panorama's trees with a score of 0.05 or more, best first, until the next call.
   std::span<const Tree> detect(const PanoramaView& panorama,

@@ -57,9 +57,8 @@ Frames Images::look(const Camera& camera, const std::function<void(int, int)>& p
     progress(++done, count);
     try {
       reader.read(file, slot);
-      const auto image = view_packed(slot.format, slot.size, slot.bytes).value();
       std::vector<TiltWitness> witnesses;
-      for (const Trunk& trunk : finder.find(warper.warp(image))) {
+      for (const Trunk& trunk : finder.find(warper.warp(slot.view()))) {
         if (const auto witness = witness_of(trunk, table.panorama())) witnesses.push_back(*witness);
       }
       frames.push_back(std::move(witnesses));

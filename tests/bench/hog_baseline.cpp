@@ -38,7 +38,7 @@ constexpr std::size_t kFramesForThreshold = 20;
 class Panorama {
  public:
   Panorama(ImageDetector& images, const fs::path& file) : geometry_(images.table().panorama()) {
-    const PanoramaView view = images.warp(read_picture(file));
+    const PanoramaView view = images.warp(view_of(read_picture(file)));
     const cv::Mat1b green(geometry_.rows, geometry_.width, const_cast<std::uint8_t*>(view.pixels),
                           view.stride);
     cv::copyMakeBorder(green, pixels_, 0, 0, kMargin, kMargin, cv::BORDER_WRAP);

@@ -49,7 +49,7 @@ class PaperOnFrames : public testing::Test {
                     const std::string& mask) {
     ImageDetector images(write_shared_camera(data(name), folder_ / name, search, mask),
                          DetectorMode::paper);
-    const PanoramaView view = images.warp(read_picture(data(name) / file));
+    const PanoramaView view = images.warp(view_of(read_picture(data(name) / file)));
     const PanoramaGeometry& panorama = images.table().panorama();
     const cv::Mat1b green(panorama.rows, panorama.width, const_cast<std::uint8_t*>(view.pixels),
                           view.stride);
