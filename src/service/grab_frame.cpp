@@ -5,7 +5,6 @@
 
 #include "base/files.h"
 #include "service/make_source.h"
-#include "warp/warper.h"
 
 namespace bole {
 namespace {
@@ -58,25 +57,10 @@ std::vector<std::byte> packed(const ImageView& image) {
   return bytes;
 }
 
-std::vector<std::byte> as_pgm(const PanoramaView& panorama) {
-  const int rows = panorama.geometry->rows;
-  const int width = panorama.geometry->width;
-  const std::string header =
-      "P5\n" + std::to_string(width) + " " + std::to_string(rows) + "\n255\n";
-  const auto head = std::as_bytes(std::span(header));
-  std::vector<std::byte> bytes(head.begin(), head.end());
-  for (int i = 0; i < rows; ++i) {
-    const auto row = std::as_bytes(std::span(panorama.row(i), static_cast<std::size_t>(width)));
-    bytes.insert(bytes.end(), row.begin(), row.end());
-  }
-  return bytes;
-}
-
 }  // namespace
 
 GrabbedFrame grab_frame(const DaemonConfig& config, const std::filesystem::path& base) {
   const Camera camera = load_camera(config.camera.file);
-  const WarpTable table = build_warp_table(camera);
   const SourceSetup setup = make_source(config, camera);
   const Opened opened(*setup.source);
   const Frame frame = take_frame(*setup.source, *setup.clock);
@@ -84,12 +68,9 @@ GrabbedFrame grab_frame(const DaemonConfig& config, const std::filesystem::path&
   const ImageView& image = frame.image();
   GrabbedFrame grabbed;
   grabbed.description = setup.source->description();
-  grabbed.raw = base.string() + "." +
-                (image.format == PixelFormat::mjpeg ? "jpg" : std::string(name(image.format)));
-  grabbed.panorama = base.string() + "_panorama.pgm";
-  write_file_atomically(grabbed.raw, packed(image));
-  Warper warper(table);
-  write_file_atomically(grabbed.panorama, as_pgm(warper.warp(image)));
+  grabbed.file = base.string() + "." +
+                 (image.format == PixelFormat::mjpeg ? "jpg" : std::string(name(image.format)));
+  write_file_atomically(grabbed.file, packed(image));
   return grabbed;
 }
 

@@ -170,6 +170,21 @@ def test_eval_keeps_ids_over_two_frames_of_one_instant_as_the_daemon_does(bolect
     assert tracked["id_switches"] == 0 and tracked["recall"] > 0
 
 
+def test_what_grab_writes_is_a_frame_for_every_command(bolectl, raw_drive, tmp_path):
+    camera = raw_drive / "camera.toml"
+    grabbed = bolectl("grab", "--camera", camera, "--source", f"replay:{raw_drive}", "--out",
+                      tmp_path / "frame")
+    assert grabbed.returncode == 0, grabbed.stderr
+    frame = tmp_path / "frame.yuyv"
+    assert [entry.name for entry in tmp_path.iterdir()] == [frame.name]
+    for command in (["detect"], ["calib", "check"]):
+        run = bolectl(*command, "--camera", camera, "--annotate", tmp_path / command[0], frame)
+        assert run.returncode == 0, run.stderr
+        assert (tmp_path / command[0] / "frame_panorama.png").exists()
+    assert bolectl("eval", "--camera", camera, "--truth", raw_drive / "truth.json", "--plots",
+                   tmp_path / "plots", raw_drive).returncode == 0
+
+
 def test_sim_leaves_no_frames_of_two_recordings_in_one_folder(bolectl, tmp_path):
     camera = pathlib.Path(__file__).parents[1] / "hil/cameras/640x480/camera.toml"
     common = ["sim", "--out", tmp_path, "--seed", "1", "--camera", camera, "--frames"]
