@@ -21,7 +21,9 @@ void add_grab(CLI::App& app) {
   const auto options = add_daemon_options(*command);
   add_source_option(*command, options);
   const auto out = std::make_shared<std::string>("frame");
-  command->add_option("--out", *out, "Path of the file, without ending")
+  command
+      ->add_option("--out", *out,
+                   "Path of the file, without ending, or a folder for one named frame")
       ->type_name("PATH")
       ->capture_default_str();
   command->callback([options, out] { grab(*options, *out); });

@@ -57,6 +57,10 @@ std::vector<std::byte> packed(const ImageView& image) {
   return bytes;
 }
 
+bool is_folder(const std::filesystem::path& path) {
+  return !path.has_filename() || std::filesystem::is_directory(path);
+}
+
 }  // namespace
 
 GrabbedFrame grab_frame(const DaemonConfig& config, const std::filesystem::path& base) {
@@ -68,7 +72,7 @@ GrabbedFrame grab_frame(const DaemonConfig& config, const std::filesystem::path&
   const ImageView& image = frame.image();
   GrabbedFrame grabbed;
   grabbed.description = setup.source->description();
-  grabbed.file = base.string() + "." +
+  grabbed.file = (is_folder(base) ? base / "frame" : base).string() + "." +
                  (image.format == PixelFormat::mjpeg ? "jpg" : std::string(name(image.format)));
   write_file_atomically(grabbed.file, packed(image));
   return grabbed;

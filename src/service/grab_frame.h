@@ -14,9 +14,9 @@ struct GrabbedFrame {
 };
 
 /// Takes one frame from config.source and writes it as it came, tightly packed, to `base` and the
-/// name of its format (".yuyv"; ".jpg" of MJPEG), which replay reads again. The first few frames
-/// are let pass, so that the camera's exposure settles. Throws CaptureError when no frame comes
-/// within ten seconds, ConfigError as the daemon does.
+/// name of its format (".yuyv"; ".jpg" of MJPEG), which replay reads again; a folder gets "frame".
+/// The first few frames are let pass, so that the camera's exposure settles. Throws CaptureError
+/// when no frame comes within ten seconds, ConfigError as the daemon does.
 GrabbedFrame grab_frame(const DaemonConfig& config, const std::filesystem::path& base);
 
 }  // namespace bole

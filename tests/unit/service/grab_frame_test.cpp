@@ -36,6 +36,14 @@ TEST(GrabFrame, WritesTheFrameAsItCameAndNothingThatAReplayTakesForAnother) {
   EXPECT_EQ(frames_in(grabbed.file.parent_path(), {}), std::vector{grabbed.file});
 }
 
+TEST(GrabFrame, NamesItFrameInAFolder) {
+  const TemporaryFolder folder;
+  const DaemonConfig config = config_for(folder.write("in.yuyv", std::string(640 * 480 * 2, 'x')));
+  std::filesystem::create_directory(folder / "there");
+  EXPECT_EQ(grab_frame(config, folder / "there").file, folder / "there/frame.yuyv");
+  EXPECT_EQ(grab_frame(config, folder / "new/").file, folder / "new/frame.yuyv");
+}
+
 TEST(GrabFrame, TellsWhyThereIsNone) {
   const TemporaryFolder folder;
   DaemonConfig config = config_for(folder.write("in.yuyv", "short"));
