@@ -8,6 +8,7 @@
 #include "commands/commands.h"
 #include "commands/progress.h"
 #include "detect/tracking/tracker.h"
+#include "evaluate/annotate.h"
 #include "evaluate/evaluation_plots.h"
 
 namespace bole {
@@ -87,6 +88,7 @@ void eval(const Options& options) {
   if (truth.frames.empty()) throw ConfigError(options.truth, "frames", "is empty", "");
   ImageDetector ours(options.camera, DetectorMode::bole);
   ImageDetector paper(options.camera, DetectorMode::paper);
+  if (!options.plots.empty()) prepare_folder("--plots", options.plots);
   const Run our_run = run(ours, DetectorMode::bole, truth, options);
   const Run paper_run = run(paper, DetectorMode::paper, truth, options);
   const auto evaluated = [&](const Run& r) {

@@ -17,6 +17,18 @@ void write_picture(const std::filesystem::path& file, const cv::Mat3b& picture) 
   write_file_atomically(file, encode_png(view_of(picture)));
 }
 
+void prepare_folder(const std::string& option, const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!error && ::access(folder.c_str(), W_OK | X_OK) != 0) {
+    error = {errno, std::generic_category()};
+  }
+  if (error) {
+    throw ConfigError(option, "", folder.string() + " cannot be written: " + error.message(),
+                      "give a folder that may be written");
+  }
+}
+
 void prepare_annotations(const std::filesystem::path& folder, std::span<const std::string> images) {
   std::map<std::string, std::string> by_name;
   for (const std::string& image : images) {
@@ -27,15 +39,7 @@ void prepare_annotations(const std::filesystem::path& folder, std::span<const st
     throw ConfigError("--annotate", "", problem,
                       "give images whose names differ before the ending");
   }
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!error && ::access(folder.c_str(), W_OK | X_OK) != 0) {
-    error = {errno, std::generic_category()};
-  }
-  if (error) {
-    throw ConfigError("--annotate", "", folder.string() + " cannot be written: " + error.message(),
-                      "give a folder that may be written");
-  }
+  prepare_folder("--annotate", folder);
 }
 
 void write_frame_annotations(const std::filesystem::path& folder, const std::string& name,

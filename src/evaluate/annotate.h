@@ -44,7 +44,10 @@ cv::Mat3b draw_polar_map(const Search& search, std::span<const Tree> trees);
 /// Writes a PNG file. Throws ConfigError when that fails.
 void write_picture(const std::filesystem::path& file, const cv::Mat3b& picture);
 
-/// Before anything is written: makes the folder, and sees to it that it can be written and that no
+/// Makes the folder and sees to it that it can be written. Throws ConfigError naming `option`.
+void prepare_folder(const std::string& option, const std::filesystem::path& folder);
+
+/// Before anything is written: prepares the folder, and sees to it that no
 /// two images' pictures would have one name. Throws ConfigError naming --annotate.
 void prepare_annotations(const std::filesystem::path& folder, std::span<const std::string> images);
 

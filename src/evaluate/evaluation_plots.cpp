@@ -161,7 +161,6 @@ std::vector<TrunkMark> judged_marks(const TruthFrame& frame, std::span<const Tre
 
 void write_plots(const std::filesystem::path& folder, const Truth& truth, double min_score,
                  const std::vector<PlottedEvaluation>& evaluations) {
-  std::filesystem::create_directories(folder);
   write_picture(folder / "roc.png", plot_roc(evaluations).picture());
   write_picture(folder / "precision_recall.png", plot_precision(evaluations).picture());
   write_picture(folder / "reliability.png", plot_reliability(evaluations).picture());

@@ -19,7 +19,7 @@ struct PlottedEvaluation {
 };
 
 /// Writes roc.png (of panorama pixels), precision_recall.png, reliability.png,
-/// position_error.png and diameter_error.png (over range) into `folder`.
+/// position_error.png and diameter_error.png (over range) into `folder`, which is there.
 void write_plots(const std::filesystem::path& folder, const Truth& truth, double min_score,
                  const std::vector<PlottedEvaluation>& evaluations);
 

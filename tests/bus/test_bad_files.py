@@ -69,6 +69,13 @@ def test_detect_does_not_blame_the_image_for_pictures_that_cannot_be_written(bol
     assert "frame_000000" not in run.stderr and run.stdout == ""
 
 
+def test_eval_refuses_a_folder_of_plots_before_it_works(bolectl, drive):
+    run = bolectl("eval", "--camera", drive / "camera.toml", "--truth", drive / "truth.json", "--plots",
+                  drive / "truth.json", drive)
+    assert_refused(run, "--plots", "truth.json", "give a folder")
+    assert run.stdout == ""
+
+
 def test_eval_names_a_bad_frame(bolectl, drive, bad_frame):
     truth = json.loads((drive / "truth.json").read_text())
     truth["frames"] = truth["frames"][:1]
