@@ -28,8 +28,8 @@ struct TrunkMark {
 /// A detected tree in the colour of its score, with its score and its range.
 TrunkMark mark_of(const Tree& tree);
 
-/// The panorama, twice its size, with the horizon, the ground's lines at whole metres and the
-/// marked trunks' rectangles from the foot up.
+/// The panorama, twice its size, with the horizon, the ground's lines at whole metres, the
+/// robot's sides named and the marked trunks' rectangles from the foot up.
 cv::Mat3b draw_panorama(const Camera& camera, const WarpTable& table, const cv::Mat3b& picture,
                         std::span<const TrunkMark> marks);
 

@@ -5,6 +5,7 @@
 #include "evaluate/annotate.h"
 #include "evaluate/drawing.h"
 #include "evaluate/image_detector.h"
+#include "geometry/angles.h"
 #include "geometry/ground.h"
 
 namespace bole {
@@ -52,6 +53,15 @@ void draw_horizon(cv::Mat3b& canvas, Labels& labels, const PanoramaGeometry& pan
   labels.add("horizon", at(24, row - 2), kHorizon, 0.4);
 }
 
+void name_directions(Labels& labels, const PanoramaGeometry& panorama) {
+  for (const auto& [name, bearing] :
+       {std::pair{"forward", 0.0}, {"left", kPi / 2}, {"back", kPi}, {"right", -kPi / 2}}) {
+    const double column = panorama.column_of_bearing(bearing);
+    if (column < -0.5 || column > panorama.width - 0.5) continue;
+    labels.add(name, at(column, 10), {255, 255, 255}, 0.45);
+  }
+}
+
 // The rectangle from the foot to the top of the picture, once more a turn on where it crosses the
 // seam.
 void draw_trunk(cv::Mat3b& canvas, const PanoramaGeometry& panorama, const TrunkMark& mark) {
@@ -96,6 +106,7 @@ cv::Mat3b draw_panorama(const Camera& camera, const WarpTable& table, const cv::
   draw_depths(canvas, labels, panorama, camera);
   draw_horizon(canvas, labels, panorama);
   for (const TrunkMark& mark : marks) draw_trunk(canvas, panorama, mark);
+  name_directions(labels, panorama);
   for (const TrunkMark& mark : marks) draw_labels(labels, panorama, mark);
   return canvas;
 }
