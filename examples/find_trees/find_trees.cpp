@@ -25,7 +25,10 @@ bole::ImageView view_of_file(const std::filesystem::path& file, bole::ImageSize 
   const auto format = bole::pixel_format_from_name(ending.empty() ? ending : ending.substr(1));
   if (!format) throw std::runtime_error(file.string() + ": its ending names no format of pixels");
   const auto image = bole::view_packed(*format, size, bytes);
-  if (!image) throw std::runtime_error(file.string() + ": is not of the calibration's size");
+  const bool varies = *format == bole::PixelFormat::mjpeg;
+  const bool fits = varies || bytes.size() == bole::packed_frame_bytes(*format, size);
+  if (!image || !fits)
+    throw std::runtime_error(file.string() + ": is not of the calibration's size");
   return *image;
 }
 

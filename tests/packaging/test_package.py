@@ -145,5 +145,8 @@ def test_a_program_of_ones_own_finds_trees_by_the_library(root, tmp_path):
     output("cmake", "--build", build)
     trees = output(build / "find_trees", camera, frame).splitlines()
     assert trees and all(" rad, " in tree for tree in trees)
-    refused = subprocess.run([build / "find_trees", camera, camera], capture_output=True, text=True)
-    assert (refused.returncode, refused.stderr.count("\n")) == (1, 1)
+    longer = tmp_path / "longer.grey"
+    longer.write_bytes(frame.read_bytes() + b"x")
+    for wrong in (camera, longer):
+        refused = subprocess.run([build / "find_trees", camera, wrong], capture_output=True, text=True)
+        assert (refused.returncode, refused.stderr.count("\n")) == (1, 1)
