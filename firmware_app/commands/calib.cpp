@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -137,6 +138,9 @@ struct Key {
   double before;
   Measured after;
   int digits;
+
+  // One standard deviation is passed by chance in one of three cameras that are as they should be.
+  bool changed() const { return std::abs(after.value - before) >= 2 * after.sigma; }
 };
 
 std::vector<Key> keys_of(const CameraConfig& before, const MountCalibration& found) {
@@ -179,13 +183,18 @@ void print_text(const std::vector<Key>& keys, const MountCalibration& found) {
   std::printf("%s, %s (one that was lost from sight may count again)\n",
               counted(found.frames, "frame").c_str(), counted(found.trunks, "trunk").c_str());
   for (const Key& key : keys) {
-    const double change = std::abs(key.after.value - key.before);
     std::printf("%-11s %.*f -> %.*f \u00b1 %.*f%s\n", key.name, key.digits, key.before, key.digits,
                 key.after.value, key.digits, key.after.sigma,
-                change < key.after.sigma ? " (no change that these frames could tell)" : "");
+                key.changed() ? "" : " (no change that these frames could tell)");
+  }
+  if (std::ranges::none_of(keys, &Key::changed)) {
+    std::printf("\nleave [mount] of camera.toml as it is\n");
+    return;
   }
   std::printf("\nfor [mount] of camera.toml:\n");
-  for (const Key& key : keys) std::printf("%s = %.*f\n", key.name, key.digits, key.after.value);
+  for (const Key& key : keys) {
+    if (key.changed()) std::printf("%s = %.*f\n", key.name, key.digits, key.after.value);
+  }
 }
 
 void mount(const Options& options) {

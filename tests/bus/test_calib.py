@@ -135,6 +135,15 @@ def test_mount_reads_raw_frames(bolectl, drive, tmp_path):
     assert "bytes" in found["left_out"][0]["error"]
 
 
+def test_mount_proposes_no_change_that_the_frames_do_not_tell(bolectl, drive, tmp_path):
+    right = bolectl("calib", "mount", "--camera", drive / "camera.toml", drive).stdout
+    assert "leave [mount]" in right and "roll_deg =" not in right
+    camera = falsified(drive, tmp_path, lambda text: re.sub(
+        r"(?m)^pitch_deg = (\S+)", lambda match: f"pitch_deg = {float(match[1]) + 3}", text))
+    tilted = bolectl("calib", "mount", "--camera", camera, drive).stdout
+    assert "pitch_deg =" in tilted and "roll_deg =" not in tilted
+
+
 def test_mount_finds_the_horizon_of_a_camera_that_looks_ahead(bolectl, tmp_path):
     camera = tmp_path / "camera.toml"
     text = """
@@ -175,7 +184,7 @@ def test_mount_finds_the_height_by_measured_trees(bolectl, drive, tmp_path):
     camera = falsified(drive, tmp_path, lambda text: text.replace("1.05", "0.95"))
     run = bolectl("calib", "mount", "--camera", camera, *trees, drive / frame["file"])
     assert run.returncode == 0, run.stderr
-    height = float(re.search(r"(?m)^height_m = (\S+)", run.stdout)[1])
+    height = float(re.search(r"(?m)^height_m +0.950 -> (\S+)", run.stdout)[1])
     assert abs(height - 1.05) < 0.08
 
 
