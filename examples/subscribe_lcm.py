@@ -1,4 +1,5 @@
-"""Trees from LCM: pip install lcm; PYTHONPATH=/usr/share/bole/python python3 subscribe_lcm.py
+"""Trees from LCM: python3 -m venv v && v/bin/pip install lcm;
+PYTHONPATH=/usr/share/bole/python v/bin/python subscribe_lcm.py
 (/usr/local/share/bole/python where bole was installed without its package)"""
 
 import lcm

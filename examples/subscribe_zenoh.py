@@ -1,5 +1,5 @@
-"""Trees from Zenoh: pip install eclipse-zenoh;
-PYTHONPATH=/usr/share/bole/python python3 subscribe_zenoh.py [tcp/127.0.0.1:7447]
+"""Trees from Zenoh: python3 -m venv v && v/bin/pip install eclipse-zenoh;
+PYTHONPATH=/usr/share/bole/python v/bin/python subscribe_zenoh.py [tcp/127.0.0.1:7447]
 (/usr/local/share/bole/python where bole was installed without its package)"""
 
 import sys
@@ -12,6 +12,7 @@ endpoint = sys.argv[1] if len(sys.argv) > 1 else "tcp/127.0.0.1:7447"
 config = zenoh.Config()
 config.insert_json5("mode", '"client"')
 config.insert_json5("connect/endpoints", f'["{endpoint}"]')
+config.insert_json5("connect/timeout_ms", "-1")  # boled may start later
 with zenoh.open(config) as session:
     subscriber = session.declare_subscriber("bole/*/*/*")
     for sample in subscriber:

@@ -99,6 +99,14 @@ def test_a_subscriber_of_zenoh_shows_trees(name, example, programs):
             assert sees(shown, " rad, ")
 
 
+def test_a_subscriber_of_zenoh_waits_for_boled(example, programs):
+    endpoint = free_endpoint()
+    with running(example("subscribe_zenoh.py", endpoint)) as shown:
+        time.sleep(1.5)  # more than it takes to be refused
+        with fake(programs, "--publish", "zenoh", "--set", f'zenoh.listen=["{endpoint}"]'):
+            assert sees(shown, " rad, ")
+
+
 # What they say of a payload that they cannot read; LCM's own C++ decoder only says that much.
 @pytest.mark.parametrize("name, told", [
     ("subscribe_lcm.py", "BOLE_TREES is not of this version"),
