@@ -60,8 +60,11 @@ class WarpTable {
   static WarpTable parse(std::vector<std::byte> bytes, const std::string& file,
                          std::uint32_t digest);
   // What a copy would show is the first one's bytes.
+  WarpTable(const WarpTable&) = delete;
+  WarpTable& operator=(const WarpTable&) = delete;
   WarpTable(WarpTable&&) = default;
   WarpTable& operator=(WarpTable&&) = default;
+  ~WarpTable() = default;
 
   /// Replaces the file at `path` by this table, in one step.
   void store(const std::filesystem::path& path) const;
